@@ -1,15 +1,18 @@
 // The program `raypool`: the commands of the machine and of its studies.
 #include "cli/run_program.hpp"
 #include "commands/study_commands.hpp"
+#include "estimate/estimated_frame.hpp"
 #include "sampled/sampled_frame.hpp"
 #include "tools/machine_commands.hpp"
 
 namespace raypool {
 namespace {
 
+constexpr EstimatingEngines kEstimating = {sampled::kSampler, estimate::estimate_frame};
+
 struct Commands {
   Commands(CLI::App& app, const std::vector<std::string>& words, int& code)
-      : machine(app, words, sampled::kSampler, code), studies(app, words, code) {}
+      : machine(app, words, kEstimating, code), studies(app, words, code) {}
   MachineCommands machine;
   StudyCommands studies;
 };

@@ -1,25 +1,18 @@
-// What engine `sampled` takes and finds. It studies the machine, so it stands above it: the program hands it to the
-// command `sim`.
+// What engines `sampled` and `estimate` take and find. They study the machine, so they stand above it: the program
+// hands them to the command `sim`.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "chip/chip.hpp"
+#include "chip/estimates.hpp"
 #include "config/configuration.hpp"
-#include "enum_array.hpp"
-#include "isa/isa.hpp"
 #include "scene/native_renderer.hpp"
+#include "scene/scene.hpp"
+#include "scene/traversal.hpp"
 
 namespace raypool::sampled {
-
-/// 95% of such intervals contain the true value.
-struct Interval {
-  double value = 0;
-  double low = 0, high = 0;
-
-  bool contains(double x) const { return low <= x && x <= high; }
-};
 
 inline constexpr double kDefaultError = 0.02;
 
@@ -31,16 +24,10 @@ struct Wanted {
   uint32_t processes = 1;  ///< at a time, 1 or more; no figure depends on it, but where `seconds` are given
 };
 
-struct Figures {
+struct Figures : Estimates {
   bool whole = false;  ///< all was simulated: the figures are exact
   uint32_t tiles = 0;  ///< of the frame
   uint32_t counted_tiles = 0, simulated_tiles = 0;
-  Interval cycles;
-  Interval mrays_per_s;
-  EnumArray<AluType, Interval, kAluTypes> alus;  ///< utilisation, of busy time, 0 .. 1
-  Interval ray_port, intersection_port, memory_port;
-
-  double error() const { return cycles.value == 0 ? 0 : (cycles.high - cycles.low) / 2 / cycles.value; }
 };
 
 /// An engine that draws a sample (studies/sampled/sampled_frame.hpp).
@@ -50,3 +37,16 @@ struct Sampler {
 };
 
 }  // namespace raypool::sampled
+
+namespace raypool {
+
+/// Engines that estimate: they study the machine.
+struct EstimatingEngines {
+  sampled::Sampler sampled;
+  /// Engine `estimate` (studies/estimate/estimated_frame.hpp).
+  Estimates (*estimate)(const Configuration& configuration, uint32_t units, const Scene& scene,
+                        const MemoryImage& image, const Tracer& tracer, const NativeOptions& native,
+                        const NativeStatistics& whole);
+};
+
+}  // namespace raypool

@@ -5,10 +5,10 @@
 namespace raypool {
 
 DrawingCommands::DrawingCommands(CLI::App& app, const std::vector<std::string>& command,
-                                 const sampled::Sampler* sampler, int& code)
+                                 const EstimatingEngines* estimating, int& code)
     : app_(app), code_(code) {
   sim_.command = command;
-  sim_.sampler = sampler;
+  sim_.estimating = estimating;
   add_sim_command();
   add_config_command();
   add_unit_command();
@@ -42,7 +42,7 @@ void DrawingCommands::add_sim_command() {
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   add_units_and_depth(*sim_app, sim_.units, sim_.depth);
-  add_threads(*sim_app, sim_.threads, "native and sampled: threads");
+  add_threads(*sim_app, sim_.threads, "native, estimate and sampled: threads");
   sim_app
       ->add_option("--error", sim_.error,
                    "sampled: half of the 95% interval of the cycles; as many tiles as that takes (default: 2%)")

@@ -15,9 +15,10 @@ constexpr char kMachineGroup[] = "Machine";
 
 class DrawingCommands {
  public:
-  /// Adds them to `app`, which must outlive this. `command` is the command line; `sampler` is the engine sampled, null:
-  /// there is none. The command that is parsed leaves its exit code in `code`.
-  DrawingCommands(CLI::App& app, const std::vector<std::string>& command, const sampled::Sampler* sampler, int& code);
+  /// Adds them to `app`, which must outlive this. `command` is the command line; `estimating`: engines sampled and
+  /// estimate, null: there are none. The command that is parsed leaves its exit code in `code`.
+  DrawingCommands(CLI::App& app, const std::vector<std::string>& command, const EstimatingEngines* estimating,
+                  int& code);
   DrawingCommands(const DrawingCommands&) = delete;
   DrawingCommands& operator=(const DrawingCommands&) = delete;
 

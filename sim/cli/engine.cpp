@@ -24,13 +24,14 @@ namespace fs = std::filesystem;
 
 Engine parse_engine(const std::string& name) {
   if (name == "native") return Engine::Native;
+  if (name == "estimate") return Engine::Estimate;
   if (name == "functional") return Engine::Functional;
   if (name == "sampled") return Engine::Sampled;
   if (name == "model") return Engine::Model;
   if (name == "rtl") return Engine::Rtl;
   if (name == "lockstep") return Engine::Lockstep;
   throw InputError(
-      fmt::format("there is no engine '{}': use native, functional, sampled, model, rtl or lockstep", name));
+      fmt::format("there is no engine '{}': use native, estimate, functional, sampled, model, rtl or lockstep", name));
 }
 
 Boundary parse_boundary(const std::string& name) {
@@ -124,8 +125,9 @@ std::string find_unit_library(const EngineOptions& options) {
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name,
                                        const std::map<uint32_t, std::string>& kernel_names) {
   const Configuration& configuration = options.configuration;
-  if (options.engine == Engine::Native || options.engine == Engine::Sampled)
-    throw InputError("engines native and sampled are for frames only: use functional, model, rtl or lockstep");
+  if (options.engine == Engine::Native || options.engine == Engine::Estimate || options.engine == Engine::Sampled)
+    throw InputError(
+        "engines native, estimate and sampled are for frames only: use functional, model, rtl or lockstep");
   if (options.engine == Engine::Functional) {
     std::vector<std::unique_ptr<ComputeUnit>> units;
     for (int i = 0; i < options.units; ++i) units.push_back(make_functional_unit(configuration, memory));

@@ -17,9 +17,9 @@
 
 namespace raypool {
 
-/// Native: no machine, the kernels as C++. Functional: the units without time. Model, Sampled: the C++ model. Rtl: the
-/// Verilated Verilog. Lockstep: both, compared in every cycle.
-enum class Engine : uint8_t { Native, Functional, Sampled, Model, Rtl, Lockstep };
+/// Native, Estimate: no machine, the kernels as C++. Functional: the units without time. Model, Sampled: the C++ model.
+/// Rtl: the Verilated Verilog. Lockstep: both, compared in every cycle.
+enum class Engine : uint8_t { Native, Estimate, Functional, Sampled, Model, Rtl, Lockstep };
 /// What of the chip is Verilog, of engines rtl and lockstep: its units, with the model of the chip around them, or all.
 enum class Boundary : uint8_t { Unit, Chip };
 

@@ -200,29 +200,32 @@ void add_native(Json& json, const NativeStatistics& native) {
   }
 }
 
-void add_sampled(Json& json, const sampled::Figures& figures, uint64_t seed, bool thesis_counts_pixels) {
-  const auto interval = [](const sampled::Interval& x) {
-    return Json{{"value", x.value}, {"low", x.low}, {"high", x.high}};
-  };
+/// `name`: of the object that has the intervals.
+void add_estimates(Json& json, const char* name, const Estimates& figures, bool thesis_counts_pixels) {
+  const auto interval = [](const Interval& x) { return Json{{"value", x.value}, {"low", x.low}, {"high", x.high}}; };
   const double cycles = figures.cycles.value;
   json["cycles"] = std::llround(cycles);
   json["mrays_per_second"] = figures.mrays_per_s.value;
   const double pixels = json["size"]["width"].get<double>() * json["size"]["height"].get<double>();
   json["mrays_per_second_thesis"] = thesis_counts_pixels ? 2e3 * pixels / cycles : figures.mrays_per_s.value;
   json["frames_per_second"] = 1e9 / cycles;
-  Json& sampled = json["sampled"];
-  sampled["seed"] = seed;
-  sampled["whole"] = figures.whole;
-  sampled["tiles"] = figures.tiles;
-  sampled["counted_tiles"] = figures.counted_tiles;
-  sampled["simulated_tiles"] = figures.simulated_tiles;
-  sampled["error"] = figures.error();
-  sampled["cycles"] = interval(figures.cycles);
-  sampled["mrays_per_second"] = interval(figures.mrays_per_s);
-  for (size_t i = 0; i < kAluTypes; ++i) sampled["alus"][std::string(kAluNames[i])] = interval(figures.alus[i]);
-  sampled["ports"] = {{"ray_port", interval(figures.ray_port)},
-                      {"intersection_port", interval(figures.intersection_port)},
-                      {"memory_port", interval(figures.memory_port)}};
+  Json& estimated = json[name];
+  estimated["error"] = figures.error();
+  estimated["cycles"] = interval(figures.cycles);
+  estimated["mrays_per_second"] = interval(figures.mrays_per_s);
+  for (size_t i = 0; i < kAluTypes; ++i) estimated["alus"][std::string(kAluNames[i])] = interval(figures.alus[i]);
+  estimated["ports"] = {{"ray_port", interval(figures.ray_port)},
+                        {"intersection_port", interval(figures.intersection_port)},
+                        {"memory_port", interval(figures.memory_port)}};
+}
+
+void add_sampled(Json& json, const sampled::Figures& figures, uint64_t seed, bool thesis_counts_pixels) {
+  json["sampled"] = {{"seed", seed},
+                     {"whole", figures.whole},
+                     {"tiles", figures.tiles},
+                     {"counted_tiles", figures.counted_tiles},
+                     {"simulated_tiles", figures.simulated_tiles}};
+  add_estimates(json, "sampled", figures, thesis_counts_pixels);
 }
 
 /// Appends a line to the table.
@@ -338,6 +341,19 @@ void chip_table(std::string& text, const ChipResult& chip, const ChipConfigurati
        100 * chip.intersection_port_utilisation, 100 * chip.memory_port_utilisation);
 }
 
+void estimates_table(std::string& text, const Estimates& figures) {
+  const Interval &cycles = figures.cycles, &speed = figures.mrays_per_s;
+  line(text, "  speed       {:.2f} Mrays/s ({:.2f} .. {:.2f}), {:.0f} cycles ({:.0f} .. {:.0f}, +-{:.1f}%)",
+       speed.value, speed.low, speed.high, cycles.value, cycles.low, cycles.high, 100 * figures.error());
+  const auto percent = [](const Interval& x) {
+    return fmt::format("{:>6.1f}% ({:.1f} .. {:.1f})", 100 * x.value, 100 * x.low, 100 * x.high);
+  };
+  line(text, "  ALU    utilisation");
+  for (size_t i = 0; i < kAluTypes; ++i) line(text, "    {} {}", kAluNames[i], percent(figures.alus[i]));
+  line(text, "  ports  rays {}, intersections {}, memory {} busy", percent(figures.ray_port),
+       percent(figures.intersection_port), percent(figures.memory_port));
+}
+
 void sampled_table(std::string& text, const RunRecord& record) {
   const sampled::Figures& figures = *record.sampled;
   if (figures.whole) {
@@ -347,16 +363,7 @@ void sampled_table(std::string& text, const RunRecord& record) {
          figures.counted_tiles, figures.tiles, 100.0 * figures.counted_tiles / figures.tiles,
          figures.simulated_tiles - figures.counted_tiles, record.seed);
   }
-  const sampled::Interval &cycles = figures.cycles, &speed = figures.mrays_per_s;
-  line(text, "  speed       {:.2f} Mrays/s ({:.2f} .. {:.2f}), {:.0f} cycles ({:.0f} .. {:.0f}, +-{:.1f}%)",
-       speed.value, speed.low, speed.high, cycles.value, cycles.low, cycles.high, 100 * figures.error());
-  const auto percent = [](const sampled::Interval& x) {
-    return fmt::format("{:>6.1f}% ({:.1f} .. {:.1f})", 100 * x.value, 100 * x.low, 100 * x.high);
-  };
-  line(text, "  ALU    utilisation");
-  for (size_t i = 0; i < kAluTypes; ++i) line(text, "    {} {}", kAluNames[i], percent(figures.alus[i]));
-  line(text, "  ports  rays {}, intersections {}, memory {} busy", percent(figures.ray_port),
-       percent(figures.intersection_port), percent(figures.memory_port));
+  estimates_table(text, figures);
 }
 
 }  // namespace
@@ -384,6 +391,7 @@ std::string to_json(const RunRecord& record) {
   if (record.chip) add_chip(json, *record.chip, record.configuration.chip);
   if (record.native) add_native(json, *record.native);
   if (record.unstable) json["unstable"] = {{"frames", record.unstable->frames}, {"pixels", record.unstable->pixels}};
+  if (record.estimated) add_estimates(json, "estimated", *record.estimated, record.depth == 1);
   if (record.sampled) add_sampled(json, *record.sampled, record.seed, record.depth == 1);
   if (record.lockstep) json["lockstep"] = lockstep_json(*record.lockstep);
   if (record.chip_lockstep) json["lockstep"] = lockstep_json(*record.chip_lockstep);
@@ -407,6 +415,10 @@ std::string to_table(const RunRecord& record) {
     chip_table(text, *record.chip, record.configuration.chip);
   }
   if (record.native) ray_table(text, record, record.native->ray_counts);
+  if (record.estimated) {
+    line(text, "  estimate    without simulation; in brackets 95% intervals");
+    estimates_table(text, *record.estimated);
+  }
   if (record.sampled) sampled_table(text, record);
   if (record.lockstep) line(text, "  {}", to_string(*record.lockstep));
   if (record.chip_lockstep) line(text, "  {}", to_string(*record.chip_lockstep));

@@ -31,9 +31,10 @@ struct RunRecord {
   bool reflections = false;  ///< are cast
   int units = 0;
   std::optional<ChipResult> chip;                   ///< engines with a chip
-  std::optional<NativeStatistics> native;           ///< engines native and sampled
+  std::optional<NativeStatistics> native;           ///< engines native, estimate and sampled
   std::optional<UnstablePixels> unstable;           ///< engine native, if asked for
   std::optional<sampled::Figures> sampled;          ///< engine sampled
+  std::optional<Estimates> estimated;               ///< engine estimate
   uint64_t seed = 0;                                ///< its
   std::optional<LockstepCounts> lockstep;           ///< engine lockstep, of the units
   std::optional<ChipLockstepCounts> chip_lockstep;  ///< or of the whole chip

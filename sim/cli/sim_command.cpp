@@ -71,8 +71,8 @@ void check_precision(const SimOptions& options, Engine engine) {
 }
 
 void check(const SimOptions& options, Engine engine) {
-  if (engine == Engine::Sampled && options.sampler == nullptr)
-    throw InputError("this program has no engine sampled: use another, such as model");
+  if ((engine == Engine::Sampled || engine == Engine::Estimate) && options.estimating == nullptr)
+    throw InputError(fmt::format("this program has no engine {}: use another, such as model", options.engine));
   check_depth_and_units(options.depth, options.units);
   if (!options.boundary.empty() && !has_verilog(engine)) {
     throw InputError(fmt::format(
@@ -90,16 +90,16 @@ void check(const SimOptions& options, Engine engine) {
   if (options.waves && !has_verilog(engine)) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
-  if (options.modules && engine == Engine::Native) {
+  if (options.modules && (engine == Engine::Native || engine == Engine::Estimate)) {
     throw InputError(fmt::format("engine {} has no chip, and so no modules to print: choose another, such as model",
                                  options.engine));
   }
   if (!options.trace.empty() && engine != Engine::Model) {
     throw InputError(fmt::format("engine {} leaves no trace: use model, or leave trace out", options.engine));
   }
-  if (options.threads != 0 && engine != Engine::Native && engine != Engine::Sampled) {
-    throw InputError(
-        fmt::format("engine {} runs on one thread: use native or sampled, or leave --threads out", options.engine));
+  if (options.threads != 0 && engine != Engine::Native && engine != Engine::Estimate && engine != Engine::Sampled) {
+    throw InputError(fmt::format(
+        "engine {} runs on one thread: use native, estimate or sampled, or leave --threads out", options.engine));
   }
   if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
   if (engine != Engine::Sampled && (!options.error.empty() || !options.time.empty() || options.seed != 0)) {
@@ -207,7 +207,7 @@ FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Sc
     native.trace = told(native.trace, *decisions);
   }
   if (work != nullptr) {
-    native.parts = options.sampler->blocks_of(record.configuration, native.width, native.height);
+    native.parts = options.estimating->sampled.blocks_of(record.configuration, native.width, native.height);
     native.work = work;
   }
   record.native.emplace();
@@ -388,7 +388,19 @@ FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, con
   chip.progress = [&](const ChipProgress& done) {
     if (progress.due()) progress.show(progress_text(done, true, progress.seconds()));
   };
-  record.sampled = options.sampler->draw(chip, static_cast<uint32_t>(options.units), work, wanted);
+  record.sampled = options.estimating->sampled.draw(chip, static_cast<uint32_t>(options.units), work, wanted);
+  record.simulation_seconds = drawing.seconds();
+  return frame;
+}
+
+/// The picture natively, the figures from what that counts.
+FrameBuffer draw_estimated_frame(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image) {
+  const Tracer tracer = tracer_of(record, scene, image);
+  warn_of_lost_shadows(record, scene, tracer);
+  const Progress drawing(true);
+  FrameBuffer frame = draw_natively(options, record, scene, image, tracer);
+  record.estimated = options.estimating->estimate(record.configuration, static_cast<uint32_t>(options.units), scene,
+                                                  image, tracer, native_options(record), *record.native);
   record.simulation_seconds = drawing.seconds();
   return frame;
 }
@@ -401,6 +413,7 @@ EyeOf eye_of(const SimOptions& options, const Scene& scene) {
 FrameBuffer draw(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image,
                  OutputFolder& out, const Progress& whole) {
   if (engine == Engine::Sampled) return draw_sampled_frame(options, record, scene, image, whole);
+  if (engine == Engine::Estimate) return draw_estimated_frame(options, record, scene, image);
   if (engine == Engine::Native) return draw_with_precision(options, record, scene, image, out);
   return draw_on_chip(options, engine, record, scene, image, out);
 }

@@ -8,8 +8,8 @@
 
 namespace raypool {
 MachineCommands::MachineCommands(CLI::App& app, const std::vector<std::string>& command,
-                                 const sampled::Sampler& sampler, int& code)
-    : app_(app), code_(code), drawing_(app, command, &sampler, code) {
+                                 const EstimatingEngines& estimating, int& code)
+    : app_(app), code_(code), drawing_(app, command, &estimating, code) {
   add_compare_command();
   add_run_command();
   add_cosim_command();

@@ -13,9 +13,10 @@ namespace raypool {
 
 class MachineCommands {
  public:
-  /// Adds them to `app`, which must outlive this. `command` is the command line; `sampler` is the engine sampled. The
-  /// command that is parsed leaves its exit code in `code`.
-  MachineCommands(CLI::App& app, const std::vector<std::string>& command, const sampled::Sampler& sampler, int& code);
+  /// Adds them to `app`, which must outlive this. `command` is the command line; `estimating`: engines sampled and
+  /// estimate. The command that is parsed leaves its exit code in `code`.
+  MachineCommands(CLI::App& app, const std::vector<std::string>& command, const EstimatingEngines& estimating,
+                  int& code);
   MachineCommands(const MachineCommands&) = delete;
   MachineCommands& operator=(const MachineCommands&) = delete;
 
