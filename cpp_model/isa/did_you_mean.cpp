@@ -22,7 +22,7 @@ std::string lower(std::string_view text) {
 }  // namespace
 
 size_t spelling_distance(std::string_view a, std::string_view b) {
-  // Rows of the table of prefixes of `a` against prefixes of `b`: those of the last two letters of `a`, and of this one.
+  // Rows of the table of prefixes of `a` against those of `b`: of the letter before the last, the last, and this one.
   std::vector<size_t> older, old, row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});
   for (size_t i = 1; i <= a.size(); ++i) {
