@@ -58,9 +58,9 @@ known := $(if $(given),$(shell grep -hoE '(^|  |export )[A-Z_]+ *[:?+]?=' Makefi
   sed -E 's/export//; s/[^A-Z_]//g'))
 unknown := $(firstword $(filter-out $(known),$(given)))
 ifneq (,$(unknown))
-  nearest := $(shell python3 -c 'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' \
+  near := $(shell python3 -c 'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' \
     "$$(tr a-z- A-Z_ <<< '$(unknown)')" $(known))
-  $(error $(unknown) is no variable of this Makefile$(patsubst %,: do you mean %?,$(nearest)) (make help-all lists all))
+  $(error $(unknown) is no variable of this Makefile$(patsubst %,: did you mean %?,$(near)) (make help-all lists all))
 endif
 
 #: variables of every target

@@ -10,12 +10,14 @@
 #include <filesystem>
 #include <optional>
 #include <regex>
+#include <set>
 
 #include "config/data_folder.hpp"
 #include "config/parameter_table.hpp"
 #include "config/settings.hpp"
 #include "files/input_file.hpp"
 #include "files/json_text.hpp"
+#include "isa/did_you_mean.hpp"
 
 namespace raypool {
 namespace {
@@ -99,8 +101,9 @@ class Section {
       if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
       if (prefix_.empty() && item.key() == "cores")
         throw InputError(fmt::format("{}: 'cores' is called 'lanes': rename the key", where_));
+      const std::string advice = fmt::format("known here: {}", fmt::join(known_, ", "));
       throw InputError(
-          fmt::format("{}: unknown key {}{}; known here: {}", where_, prefix_, item.key(), fmt::join(known_, ", ")));
+          fmt::format("{}: unknown key {}{}{}", where_, prefix_, item.key(), did_you_mean(item.key(), known_, advice)));
     }
   }
 
@@ -114,15 +117,14 @@ class Section {
   void instructions(std::string_view key, const Range& range, uint32_t& value) {
     const Json* found = find(key);
     if (found == nullptr) return;
-    const auto refuse = [&](const Json& what) {
-      throw InputError(
-          fmt::format("{}: {}{} has {}; it must be {}", where_, prefix_, key, what.dump(), text_of(range)));
+    const auto refuse = [&](const Json& what, const std::string& end) {
+      throw InputError(fmt::format("{}: {}{} has {}{}", where_, prefix_, key, what.dump(), end));
     };
-    if (!found->is_array()) refuse(*found);
+    if (!found->is_array()) refuse(*found, fmt::format("; it must be {}", text_of(range)));
     value = 0;
     for (const Json& each : *found) {
       const auto operation = each.is_string() ? operation_named(range, each.get<std::string>()) : std::nullopt;
-      if (!operation) refuse(each);
+      if (!operation) refuse(each, must_be(range, each));
       value |= 1u << *operation;
     }
   }
@@ -136,7 +138,15 @@ class Section {
   }
   [[noreturn]] void refuse(const Parameter& parameter, const Json& found) const {
     throw InputError(
-        fmt::format("{}: {} is {}; it must be {}", where_, path_of(parameter), found.dump(), text_of(parameter.range)));
+        fmt::format("{}: {} is {}{}", where_, path_of(parameter), found.dump(), must_be(parameter.range, found)));
+  }
+  /// The end of a refusal; of names it asks for the nearest.
+  static std::string must_be(const Range& range, const Json& found) {
+    const std::string advice = fmt::format("it must be {}", text_of(range));
+    const bool named = range.form == Range::Form::Name || range.form == Range::Form::Instructions;
+    if (!named || !found.is_string()) return "; " + advice;
+    const std::vector<std::string_view> names = names_of(range);
+    return did_you_mean(found.get<std::string>(), {names.begin(), names.end()}, advice);
   }
   const Json* find(std::string_view key) {
     known_.emplace_back(key);
@@ -230,6 +240,16 @@ std::vector<fs::path> configuration_folders() {
   return folders;
 }
 
+/// Those of the files in them, each once.
+std::vector<std::string> configuration_names() {
+  std::set<std::string> names;
+  std::error_code none;
+  for (const fs::path& folder : configuration_folders())
+    for (const auto& entry : fs::directory_iterator(folder, none))
+      if (entry.path().extension() == ".json") names.insert(entry.path().stem());
+  return {names.begin(), names.end()};
+}
+
 /// N warps and M lanes, if that is what the name says, of the defaults (NwMc) or of a file in one of the folders
 /// (best_NwMc: of best.json).
 std::optional<Source> warps_and_lanes(const std::string& name, const std::vector<fs::path>& folders) {
@@ -280,9 +300,10 @@ Source find_source(const std::string& name_or_path) {
     if (const std::optional<Source> source = warps_and_lanes(name_or_path, configuration_folders())) return *source;
   }
   throw InputError(fmt::format(
-      "no configuration '{}': give the path of a JSON file, the name of a file in configs/, NwMc for N warps "
-      "of M lanes, or best_NwMc",
-      name_or_path));
+      "no configuration '{}'{}", name_or_path,
+      did_you_mean(name_or_path, is_name ? configuration_names() : std::vector<std::string>(),
+                   "give the path of a JSON file, the name of a file in configs/, NwMc for N warps of M lanes, or "
+                   "best_NwMc")));
 }
 
 /// "8w8c+alus.flt.count-2": the name of a machine of which fields have been set, unless they had these values.

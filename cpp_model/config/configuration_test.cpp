@@ -281,13 +281,25 @@ TEST(Configuration, AnAluMayLackInstructions) {
 
 TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
   EXPECT_EQ(
-      error_of(R"({"warp": 8})"),
-      "unknown key warp; known here: name, warps, lanes, stack_depth, triples, kernel_overlap, wide_ray_memory, "
+      error_of(R"({"threads": 8})"),
+      "unknown key threads; known here: name, warps, lanes, stack_depth, triples, kernel_overlap, wide_ray_memory, "
       "slow_lanes, intersection_words, registers, predicates, arguments, pc_bits, counter_bits, instruction_cache, "
       "data_cache, arithmetic, alus, chip, $schema");
-  EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"),
-            "unknown key alus.flt.counts; known here: count, latency, depth, without");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
+}
+
+TEST(Configuration, AMistypedKeyOrNameNamesTheNearest) {
+  EXPECT_EQ(error_of(R"({"wraps": 8})").find("unknown key wraps: did you mean warps? (known here: name, warps, "), 0u);
+  EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"),
+            "unknown key alus.flt.counts: did you mean count? (known here: count, latency, depth, without)");
+  EXPECT_EQ(
+      error_of(R"({"chip": {"ray_pol": {"size": 100}}})").find("unknown key chip.ray_pol: did you mean ray_pool?"), 0u);
+  EXPECT_EQ(error_of(R"({"arithmetic": {"slow_unit": "newton"}})"),
+            "arithmetic.slow_unit is \"newton\": did you mean newton2, newton1 or newton0? (it must be one of exact, "
+            "newton2, newton1, newton0)");
+  EXPECT_EQ(
+      error_of(R"({"alus": {"slw": {"without": ["fdvi"]}}})"),
+      "alus.slw.without has \"fdvi\": did you mean fdiv? (it must be a list of some of fdiv, fsqrt, frsqrt, frcp)");
 }
 
 TEST(Configuration, AKeyByItsOldNameIsToldTheNewOne) {
@@ -378,8 +390,15 @@ TEST(Configuration, NameWithoutFileSaysWhatToGive) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "no configuration 'nonesuch': give the path of a JSON file, the name of a file in configs/, NwMc for N "
+        "no configuration 'nonesuch'; give the path of a JSON file, the name of a file in configs/, NwMc for N "
         "warps of M lanes, or best_NwMc");
+  }
+  try {
+    load_configuration("tniy");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("no configuration 'tniy': did you mean tiny? (give the path of a JSON "),
+              0u);
   }
   EXPECT_THROW(load_configuration(""), InputError);
   EXPECT_THROW(load_configuration("no/such/file.json"), InputError);

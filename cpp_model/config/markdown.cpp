@@ -13,8 +13,8 @@ constexpr const char* kIntroduction = R"(# Parameters
 Generated from the one table, `cpp_model/config/parameters.hpp`, by `raypool isa --write`; a test compares. Do not edit.
 
 A configuration is a JSON file: one in `configs/`, or your own. What it leaves out has its default;
-`raypool config FILE` prints all of it. [where.md](where.md#a-parameter-from-json-to-its-module) shows a parameter's
-way to the module that uses it, and adds one.
+`raypool config FILE` prints all of it. [where.md](../develop/where.md#a-parameter-from-json-to-its-module) shows a
+parameter's way to the module that uses it, and adds one.
 
 | in the file | in the Verilog | values | default | what it is |
 | --- | --- | --- | --- | --- |

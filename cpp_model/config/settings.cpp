@@ -1,12 +1,13 @@
 #include "config/settings.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
+#include <cstdint>
 #include <sstream>
+
+#include "isa/did_you_mean.hpp"
 
 namespace raypool {
 
@@ -15,42 +16,43 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr const char* kName = "name";
-constexpr size_t kNearest = 3;  // fields that a sentence names
 
 struct Assignment {
   std::string path, value;
 };
 
-/// How many letters must be changed, added or taken away to make `b` of `a`.
-size_t distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t corner = row[0]++;
-    for (size_t j = 0; j < b.size(); ++j)
-      corner = std::exchange(row[j + 1], std::min({corner + (a[i] != b[j]), row[j] + 1, row[j + 1] + 1}));
+/// Of a path that may lack sections at its beginning, and of a section that stands for its fields.
+size_t distance_of_path(std::string_view given, std::string_view path) {
+  size_t least = SIZE_MAX, missing = 0;
+  for (size_t begin = 0; begin != std::string_view::npos; begin = path.find('.', begin)) {
+    if (begin != 0) ++begin;
+    for (size_t end = path.find('.', begin);; end = path.find('.', end + 1)) {
+      least = std::min(least, missing + spelling_distance(given, path.substr(begin, end - begin)));
+      if (end == std::string_view::npos) break;
+    }
+    missing = 1;
   }
-  return row[b.size()];
+  return least;
 }
 
-/// Of a path that may lack its beginning.
-size_t distance_of_path(const std::string& given, const std::string& path) {
-  size_t least = distance(given, path);
-  for (size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
-    least = std::min(least, 1 + distance(given, std::string_view(path).substr(dot + 1)));
-  // Of a group all fields are near.
-  return path.compare(0, given.size() + 1, given + ".") == 0 ? 0 : least;
+/// Those with the least distance.
+std::vector<std::string> nearest_fields(std::string_view given) {
+  std::vector<std::string> paths = {kName}, nearest;
+  for (const ConfigurationField& field : fields()) paths.push_back(field.path);
+  size_t least = SIZE_MAX;
+  for (const std::string& path : paths) {
+    const size_t distance = distance_of_path(given, path);
+    if (distance > least || !is_misspelling(given, distance)) continue;
+    if (distance < least) nearest.clear();
+    least = distance;
+    nearest.push_back(path);
+  }
+  return nearest;
 }
 
 [[noreturn]] void refuse_unknown(const std::string& path) {
-  std::vector<std::string> names = {kName};
-  for (const ConfigurationField& field : fields()) names.push_back(field.path);
-  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
-    return distance_of_path(path, a) < distance_of_path(path, b);
-  });
-  names.resize(kNearest);
-  throw InputError(fmt::format("--set: there is no field '{}'; near to it are {}; raypool config prints all", path,
-                               fmt::join(names, ", ")));
+  throw InputError(fmt::format("--set: there is no field '{}'{}", path,
+                               did_you_mean(nearest_fields(path), "raypool config prints all")));
 }
 
 std::vector<Assignment> assignments(const std::vector<std::string>& texts) {
@@ -82,7 +84,10 @@ Json parse_value(const ConfigurationField& field, const std::string& text) {
     case Range::Form::Name: {
       const std::vector<std::string_view> names = names_of(field.range);
       if (std::find(names.begin(), names.end(), text) != names.end()) return text;
-      break;
+      const std::vector<std::string> nearest = nearest_names(text, {names.begin(), names.end()});
+      if (nearest.empty()) break;
+      throw InputError(fmt::format("--set {}={}{}", field.path, text,
+                                   did_you_mean(nearest, fmt::format("it must be {}", text_of(field.range)))));
     }
     case Range::Form::Instructions: {  // imul,sar; nothing: none. Who reads the file checks their names
       Json list = Json::array();

@@ -69,15 +69,27 @@ TEST(Settings, OnlyTheUnitsFieldsAskForAnotherVerilatedUnit) {
 }
 
 TEST(Settings, AnUnknownFieldNamesTheNearest) {
-  EXPECT_EQ(
-      settings_error({"flt.count=2"}).find("--set: there is no field 'flt.count'; near to it are alus.flt.count, "), 0u)
-      << settings_error({"flt.count=2"});
-  EXPECT_NE(settings_error({"slow_unit=exact"}).find("near to it are arithmetic.slow_unit, "), std::string::npos);
-  EXPECT_NE(settings_error({"data_cache.size=512"}).find("data_cache.bytes"), std::string::npos);
-  EXPECT_NE(
-      settings_error({"chip.memory=5"}).find("chip.memory.latency, chip.memory.cycles_per_beat, chip.memory.queue"),
-      std::string::npos)
+  EXPECT_EQ(settings_error({"chip.ray_pol=9"}),
+            "--set: there is no field 'chip.ray_pol': did you mean chip.ray_pool.size, chip.ray_pool.overhead or "
+            "chip.ray_pool.cycles_per_beat? (raypool config prints all)");
+  EXPECT_EQ(settings_error({"flt.count=2"}),
+            "--set: there is no field 'flt.count': did you mean alus.flt.count? (raypool config prints all)");
+  EXPECT_EQ(settings_error({"slow_unit=exact"}),
+            "--set: there is no field 'slow_unit': did you mean arithmetic.slow_unit? (raypool config prints all)");
+  EXPECT_EQ(settings_error({"data_cache.size=512"}),
+            "--set: there is no field 'data_cache.size': did you mean data_cache.bytes or data_cache.mshrs? (raypool "
+            "config prints all)");
+  EXPECT_EQ(settings_error({"chip.memory=5"})
+                .find("--set: there is no field 'chip.memory': did you mean chip.memory.latency, "
+                      "chip.memory.cycles_per_beat or chip.memory.queue? (raypool config prints all)"),
+            0u)
       << settings_error({"chip.memory=5"});
+  EXPECT_EQ(settings_error({"colour=5"}), "--set: there is no field 'colour'; raypool config prints all");
+}
+
+TEST(Settings, AMistypedNameNamesTheNearest) {
+  EXPECT_EQ(settings_error({"chip.traverser=hardwre"}),
+            "--set chip.traverser=hardwre: did you mean hardware? (it must be one of static, hardware)");
 }
 
 TEST(Settings, AValueThatCannotBeIsOneSentence) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bits.hpp"
+#include "isa/did_you_mean.hpp"
 #include "isa/encoding.hpp"
 #include "isa/input_error.hpp"
 
@@ -186,7 +187,8 @@ class Assembler {
     if (mnemonic.empty()) fail(start, fmt::format("expected an instruction, found {}", rest()));
     parts.info = find_instruction(mnemonic);
     if (parts.info == nullptr)
-      fail(start, fmt::format("unknown instruction '{}'; docs/machine/isa.md lists them", mnemonic));
+      fail(start, fmt::format("unknown instruction '{}'{}", mnemonic,
+                              did_you_mean(mnemonic, mnemonics(), "docs/machine/isa.md lists all")));
     bool first = true;
     for (const Operand operand : parts.info->operands) {
       if (operand == Operand::None) continue;
@@ -380,9 +382,21 @@ class Assembler {
     for (const Reference& reference : references_) {
       const auto label = labels_.find(reference.label);
       if (label == labels_.end())
-        fail(reference.place, fmt::format("label '{}' is not defined in this file", reference.label));
+        fail(reference.place, fmt::format("label '{}' is not defined in this file{}", reference.label,
+                                          did_you_mean(reference.label, label_names(), "")));
       program_.code[reference.instruction] |= static_cast<uint64_t>(label->second) << reference.lsb;
     }
+  }
+
+  static std::vector<std::string> mnemonics() {
+    std::vector<std::string> names;
+    for (const InstructionInfo& info : kInstructions) names.emplace_back(info.mnemonic);
+    return names;
+  }
+  std::vector<std::string> label_names() const {
+    std::vector<std::string> names;
+    for (const auto& label : labels_) names.push_back(label.first);
+    return names;
   }
 
   const std::string& source_name_;

@@ -334,13 +334,22 @@ TEST(Assembler, ImmediatesInAllNotations) {
   EXPECT_EQ(immediate("ld r1, [ r2 - 1 ]"), 0xffffffffu);
 }
 
+TEST(Assembler, AMistypedMnemonicOrLabelNamesTheNearest) {
+  EXPECT_EQ(error_of("fad r1, r2, r3"),
+            "file:1:1: unknown instruction 'fad': did you mean fadd? (docs/machine/isa.md lists all)");
+  EXPECT_EQ(error_of("exti"),
+            "file:1:1: unknown instruction 'exti': did you mean exit? (docs/machine/isa.md lists all)");
+  EXPECT_EQ(error_of("again: exit\njany agian"),
+            "file:2:6: label 'agian' is not defined in this file: did you mean again?");
+}
+
 TEST(Assembler, ErrorsNameLineColumnAndRemedy) {
   EXPECT_EQ(error_of("exit\n mov r16, 1"), "file:2:6: unknown register r16; registers are r0 to r15");
   EXPECT_EQ(error_of("mov p1, 1"), "file:1:5: expected a register, found 'p1'; registers are r0 to r15");
   EXPECT_EQ(error_of("@p16 mov r1, 1"), "file:1:2: unknown predicate p16; predicates are p0 to p15");
   EXPECT_EQ(error_of("mov r01, 1"), "file:1:5: unknown register r01; registers are r0 to r15");
   EXPECT_EQ(error_of("iadd r1, r2, r17"), "file:1:14: unknown register r17; registers are r0 to r15");
-  EXPECT_EQ(error_of("fad r1, r2, r3"), "file:1:1: unknown instruction 'fad'; docs/machine/isa.md lists them");
+  EXPECT_EQ(error_of("saxpy r1, r2, r3"), "file:1:1: unknown instruction 'saxpy'; docs/machine/isa.md lists all");
   EXPECT_EQ(error_of("fadd r1, r2"), "file:1:12: expected ',' before the next operand, found the end of the line");
   EXPECT_EQ(error_of("fadd r1, r2, r3, r4"), "file:1:16: expected the end of the line, found ','");
   EXPECT_EQ(error_of("fadd r1, r2, 2"),

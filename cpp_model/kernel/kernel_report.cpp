@@ -1,10 +1,12 @@
 #include "kernel/kernel_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <numeric>
 
 #include "bits.hpp"
+#include "isa/did_you_mean.hpp"
 #include "isa/encoding.hpp"
 
 namespace raypool {
@@ -38,9 +40,10 @@ int total(const InstructionCounts& counts) { return std::accumulate(counts.begin
 Program extract_kernel(const Program& program, const std::string& name) {
   const auto found = program.entries.find(name);
   if (found == program.entries.end()) {
-    std::string names;
-    for (const auto& entry : program.entries) names += (names.empty() ? "" : ", ") + entry.first;
-    throw InputError(fmt::format("there is no kernel '{}'; there are {}", name, names));
+    std::vector<std::string> names;
+    for (const auto& entry : program.entries) names.push_back(entry.first);
+    throw InputError(fmt::format("there is no kernel '{}'{}", name,
+                                 did_you_mean(name, names, fmt::format("there are {}", fmt::join(names, ", ")))));
   }
   const uint32_t begin = found->second;
   auto end = size32(program.code);

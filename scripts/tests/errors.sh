@@ -39,6 +39,8 @@ printf 'iadd r1, r1, 1\njany 5000\nexit\n' > "$folder/far.asm"
 printf 'iadd r1, r1, 1\n' > "$folder/end.asm"
 printf 'mov r1, 0x7ffffff0\nld r2, [r1+0]\nexit\n' > "$folder/load.asm"
 printf 'mov r1, 0\nnonsense r1\nexit\n' > "$folder/word.asm"
+printf 'mvo r1, 0\nexit\n' > "$folder/mistyped.asm"
+printf 'again:\njany agian\nexit\n' > "$folder/label.asm"
 printf 'again:\njany again\nexit\n' > "$folder/forever.asm"
 printf 'again: tid r1\njany again\nexit\n' > "$folder/spin.asm"
 printf '%s\n' 'mov r1, 600000' 'ine p1, r1, 0' '@p1 loop e' '@p1 isub r1, r1, 1' '@p1 ine p1, r1, 0' 'e: exit' \
@@ -91,11 +93,11 @@ refuses_sim "size without x" "1 to 16384" --size 64
 refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
 refuses_sim "unknown engine" "native, functional, sampled, model, rtl or lockstep" --engine spice
-refuses_sim "unknown boundary" "no boundary 'board': use unit or chip" --engine rtl --boundary board
+refuses_sim "unknown boundary" "no boundary 'board'; use unit or chip" --engine rtl --boundary board
 refuses_sim "a boundary without Verilog" "engine model has no Verilog, and so no boundary" --engine model \
   --boundary chip
-refuses_sim "unknown hits" "--hits is 'mine': use own or embree" --engine native --hits mine
-refuses_sim "unknown precision" "--precision is 'half': use single or double" --engine native --precision half
+refuses_sim "unknown hits" "--hits is 'mine'; use own or embree" --engine native --hits mine
+refuses_sim "unknown precision" "--precision is 'half'; use single or double" --engine native --precision half
 refuses_sim "a machine in double precision" "engine model draws with the arithmetic of its machine" \
   --engine model --precision double
 refuses_sim "unstable pixels of a machine" "engine model draws with the arithmetic of its machine" \
@@ -123,7 +125,7 @@ refuses_sim "threads of an engine that has one" "engine model runs on one thread
 refuses_sim "more threads than there may be" "Value 257 not in range 1 to 256" --engine native --threads 257
 refuses_sim "unknown traverser" "chip.traverser must be one of static, hardware" --traverser quick
 refuses_sim "unknown policy" "chip.policy must be one of thesis" --set chip.policy=magic
-refuses_sim "unknown field" "no field 'flt.count'; near to it are alus.flt.count" --set flt.count=2
+refuses_sim "unknown field" "no field 'flt.count': did you mean alus.flt.count\?" --set flt.count=2
 refuses_sim "value of another type" "warps must be a power of two" --set warps=eight
 refuses_sim "set value out of range" "8w8c.json with --set warps=3: warps is 3" --set warps=3
 refuses_sim "field without a value" "write FIELD=VALUE" --set warps
@@ -177,8 +179,36 @@ refuses_sim "waveform of an engine without one" "waveform" --waves
 refuses_sim "trace of an engine without one" "leaves no trace" --trace :
 refuses_sim "window of a trace that is none" "FROM:CYCLES" --engine model --trace 5:0
 refuses_sim "trace around a pixel outside" "numbered from 0" --engine model --trace pixel:4000,0
-refuses_sim "unknown option" "--help" --colour
-refuses "unknown kernel" "saxpy" "$raypool" run sexpy
+refuses_sim "unknown option" "sim has no option --colour; raypool sim --help lists all" --colour
+refuses "unknown kernel" "saxpy" "$raypool" run linpack
+refuses "no command" "^raypool: give a command, such as sim; raypool --help lists all$" "$raypool"
+
+# What is mistyped: the nearest right word.
+means() {
+  local meant=$1; shift
+  refuses "mistyped: $*" "did you mean $meant\?( \(|$)" "$raypool" "$@"
+}
+means sim smi
+means --scene sim --scen room
+means --quiet sim room --queit
+means room sim rom
+means model sim --engine modle
+means chip sim --engine rtl --boundary chp
+means embree sim --engine native --hits embre
+means double sim --engine native --precision duble
+means hardware sim --traverser hardwre
+means 'chip.ray_pool.size, .* or .*' sim --set chip.ray_pol=9
+means fill sim --set chip.policy=fil
+means tiny sim --config tniy
+means warps sim --config "$folder/unknown.json"
+means saxpy run sexpy
+means mov asm "$folder/mistyped.asm"
+means again asm "$folder/label.asm"
+means cast_eye kernels cast_eey
+means operands cosim --config 4w4c --engine model --mix operand
+means zsh completion zhs
+means show scene --cache shw
+means flush-newton1 numerics --mode flush-newtn1
 refuses "saxpy of nothing" "--n is 0: saxpy takes a size from 1 to" "$raypool" run saxpy --n 0
 refuses "no cycles" "--cycles" "$raypool" run saxpy --cycles 0
 # Some 11 million cycles in which nothing is transferred: a limit that was given is the limit.

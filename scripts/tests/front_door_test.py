@@ -135,7 +135,7 @@ class Values(unittest.TestCase):
         for word, name in (("SCNE=room", "SCENE"), ("look-at=1", "LOOK_AT"), ("CONFIGS=4w4c", "CONFIG")):
             done = make("sim", "SIZE=8x8", word, folder=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
-            said = f"{word.split('=')[0]} is no variable of this Makefile: do you mean {name}? (make help-all"
+            said = f"{word.split('=')[0]} is no variable of this Makefile: did you mean {name}? (make help-all"
             self.assertIn(said, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1)
         self.assertIn("XYZZY is no variable of this Makefile (make", make("XYZZY=1", folder=self.folder).stderr)

@@ -31,15 +31,25 @@ sed -nE '/^\| [0-9] \|/p' docs/use/package.md | diff "$folder/codes" - ||
 grep -qF "\"raypool $version\"" "$folder/man" || fail "the man page has another version than $version"
 for shell in bash zsh fish; do "$raypool" completion "$shell" > "$folder/$shell"; done
 sed -E 's/\\f[BIR]//g; s/\\-/-/g' "$folder/man" > "$folder/text"
-"$raypool" --help | sed -nE '/^(Machine|Studies):/,/^$/s/^  ([a-z]+) .*/\1/p' > "$folder/commands"
+groups='Simulate Verify Look_at_and_convert Machine_and_synthesis Studies Shell'
+[ "$("$raypool" --help | grep -E '^[A-Z][a-z ]+:$' | tr -d : | tr ' ' _ | paste -sd ' ')" = \
+  "$groups Options Exit_codes" ] || fail "raypool --help has other groups: $("$raypool" --help)"
+"$raypool" --help | sed -nE '/^(Simulate|Verify|Look .*|Machine .*|Studies|Shell):$/,/^$/s/^  ([a-z]+) .*/\1/p' \
+  > "$folder/commands"
 [ "$(wc -l < "$folder/commands")" -ge 15 ] || fail "raypool --help lists only $(wc -l < "$folder/commands") commands"
-[ "$(grep -E '^\.SH (MACHINE|STUDIES)$|^\.SS (sim|fit)$' "$folder/man" | paste -sd ' ')" = \
-  ".SH MACHINE .SS sim .SH STUDIES .SS fit" ] || fail "the man page has other groups than raypool --help"
+[ "$(sed -nE 's/^\.SH //p' "$folder/man" | tr ' ' _ | paste -sd ' ')" = \
+  "NAME SYNOPSIS OPTIONS ${groups^^} EXIT_STATUS ENVIRONMENT" ] ||
+  fail "the man page has other groups than raypool --help"
+[ "$(sed -nE 's/^\.SS //p' "$folder/man")" = "$(cat "$folder/commands")" ] ||
+  fail "the man page has the commands in another order than raypool --help"
 options=0
 while read -r command; do
   grep -qFx ".SS $command" "$folder/man" || fail "the man page lacks $command"
   awk -v command=".SS $command" '/^\.S[SH]/ { inside = $0 == command } inside' "$folder/text" > "$folder/section"
-  for option in $("$raypool" "$command" --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
+  "$raypool" "$command" --help > "$folder/help"
+  grep -E '^.{101}' "$folder/help" && fail "raypool $command --help has lines of more than 100 columns"
+  grep -oE '^  \[?(-[a-z],)?--[a-z-]+' "$folder/help" | grep -oE -- '--[a-z-]+' > "$folder/options"
+  while read -r option; do
     grep -qE -e "(^|, )$option\b" "$folder/section" || fail "the man page lacks $command $option"
     grep -qE -e "^    $command\) words='(.* )?${option}[ ']" "$folder/bash" ||
       fail "bash completion lacks $command $option"
@@ -49,7 +59,14 @@ while read -r command; do
     grep -qE -e "__fish_seen_subcommand_from $command'.* -l ${option#--}( |$)" "$folder/fish" ||
       fail "fish completion lacks $command $option"
     options=$((options + 1))
-  done
+  done < "$folder/options"
+done < "$folder/commands"
+"$raypool" sim --help | grep -E '^[A-Z][a-z ]+:$' | tr -d : | paste -sd ',' > "$folder/groups"
+[ "$(cat "$folder/groups")" = 'Scene and view,Machine,Engine,Sampling,Output,Options' ] ||
+  fail "raypool sim --help has other groups: $(cat "$folder/groups")"
+"$raypool" --help-all > "$folder/all"
+while read -r command; do
+  grep -qE "^Usage: raypool $command( |$)" "$folder/all" || fail "raypool --help-all lacks $command"
 done < "$folder/commands"
 [ "$options" -ge 80 ] || fail "only $options options were found in --help"
 

@@ -10,9 +10,6 @@
 
 namespace raypool {
 
-/// The heading of the machine's commands in --help.
-constexpr char kMachineGroup[] = "Machine";
-
 class DrawingCommands {
  public:
   /// Adds them to `app`, which must outlive this. `command` is the command line; `estimating`: engines sampled and
@@ -23,8 +20,10 @@ class DrawingCommands {
   DrawingCommands& operator=(const DrawingCommands&) = delete;
 
  private:
-  CLI::App* add(const std::string& name, const std::string& what);
   void add_sim_command();
+  void add_engine_options(CLI::App& sim_app);
+  void add_sampling_options(CLI::App& sim_app);
+  void add_output_options(CLI::App& sim_app);
   void add_config_command();
   void add_unit_command();
 

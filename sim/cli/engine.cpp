@@ -11,6 +11,7 @@
 
 #include "cli/folders.hpp"
 #include "config/data_folder.hpp"
+#include "isa/did_you_mean.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/chip/chip_model.hpp"
@@ -31,13 +32,16 @@ Engine parse_engine(const std::string& name) {
   if (name == "rtl") return Engine::Rtl;
   if (name == "lockstep") return Engine::Lockstep;
   throw InputError(
-      fmt::format("there is no engine '{}': use native, estimate, functional, sampled, model, rtl or lockstep", name));
+      fmt::format("there is no engine '{}'{}", name,
+                  did_you_mean(name, {"native", "estimate", "functional", "sampled", "model", "rtl", "lockstep"},
+                               "use native, estimate, functional, sampled, model, rtl or lockstep")));
 }
 
 Boundary parse_boundary(const std::string& name) {
   if (name == "unit") return Boundary::Unit;
   if (name == "chip") return Boundary::Chip;
-  throw InputError(fmt::format("there is no boundary '{}': use unit or chip", name));
+  throw InputError(
+      fmt::format("there is no boundary '{}'{}", name, did_you_mean(name, {"unit", "chip"}, "use unit or chip")));
 }
 
 namespace {

@@ -17,10 +17,7 @@ struct ExitCode {
 };
 inline constexpr std::array<ExitCode, 4> kExitCodes = {{
     {kDone, "done, and every check of it passed"},
-    {kInputFailure,
-     "an option, a file or a program that cannot be used, an output that cannot be written; a program that faults or "
-     "reaches its "
-     "limit"},
+    {kInputFailure, "unusable option, file or program; unwritable output; a program that faults or reaches its limit"},
     {kDifference, "the lockstep found a difference between hardware and model"},
     {kOtherFailure, "wrong results, a promise that is not kept, a chip that stalls; any other failure"},
 }};

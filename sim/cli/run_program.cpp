@@ -1,7 +1,6 @@
 #include "cli/run_program.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +13,9 @@
 #include "cli/about.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/folders.hpp"
+#include "cli/help.hpp"
 #include "cli/inspecting_run.hpp"
+#include "cli/refusal.hpp"
 #include "files/unfinished.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "scene/scene_cache.hpp"
@@ -29,24 +30,16 @@ std::string exit_codes() {
   return text;
 }
 
-/// "--size is given 2 times (8x8, 16x16): give it once", of an option that takes one
-/// value; empty if there is none such.
-std::string given_twice(const CLI::App& app) {
-  for (const CLI::App* sub : app.get_subcommands()) {
-    for (const CLI::Option* option : sub->get_options()) {
-      const std::vector<std::string>& values = option->results();
-      if (option->get_expected_max() != 1 || values.size() < 2) continue;
-      return fmt::format("{} is given {} times ({}): give it once", option->get_name(), values.size(),
-                         fmt::join(values, ", "));
-    }
-  }
-  return "";
+CLI::App& with_help(CLI::App& app) {
+  app.formatter(help_formatter());
+  app.set_help_flag("-h,--help", "print this help");
+  return app;
 }
 
 /// The commands with their options, as CLI11 takes them.
 class CommandLine {
  public:
-  CommandLine(const std::vector<std::string>& words, AddCommands add) : commands_(add(app_, words, code_)) {
+  CommandLine(const std::vector<std::string>& words, AddCommands add) : commands_(add(with_help(app_), words, code_)) {
     app_.require_subcommand(1);
     app_.set_help_all_flag("--help-all", "help of every command");
     app_.set_version_flag(
@@ -58,8 +51,8 @@ class CommandLine {
 
  private:
   CLI::App app_{
-      "raypool: a ray-tracing GPU to render on, measure, verify and synthesise. RAYPOOL COMMAND --help tells more of a "
-      "command.",
+      "raypool: a ray-tracing GPU to render on, measure, verify and synthesise\n"
+      "Begin with raypool sim room; raypool COMMAND --help lists the options of a command.",
       "raypool"};
   int code_ = 0;
   std::shared_ptr<void> commands_;  // what options and callbacks refer to
@@ -71,9 +64,7 @@ int CommandLine::run(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app_.exit(success);
   } catch (const CLI::ParseError& error) {
-    const std::string twice = given_twice(app_);
-    std::fprintf(stderr, "raypool: %s (raypool --help shows what there is)\n",
-                 twice.empty() ? error.what() : twice.c_str());
+    std::fprintf(stderr, "raypool: %s\n", refusal(app_, error).c_str());
     return kInputFailure;
   }
   return code_;

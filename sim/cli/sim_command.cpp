@@ -21,6 +21,7 @@
 #include "config/settings.hpp"
 #include "config/unused_fields.hpp"
 #include "files/unfinished.hpp"
+#include "isa/did_you_mean.hpp"
 #include "scene/double_renderer.hpp"
 #include "scene/embree_scene.hpp"
 #include "scene/image.hpp"
@@ -57,8 +58,10 @@ void check_precision(const SimOptions& options, Engine engine) {
         "--hits embree");
   }
   if (options.precision.empty()) return;
-  if (options.precision != "single" && options.precision != "double")
-    throw InputError(fmt::format("--precision is '{}': use single or double", options.precision));
+  if (options.precision != "single" && options.precision != "double") {
+    throw InputError(fmt::format("--precision is '{}'{}", options.precision,
+                                 did_you_mean(options.precision, {"single", "double"}, "use single or double")));
+  }
   if (options.precision == "single") return;
   const std::vector<std::string> set = paths_set(options.set);
   const bool arithmetic =
@@ -82,8 +85,10 @@ void check(const SimOptions& options, Engine engine) {
     throw InputError(
         fmt::format("engine {} has the hits of its traverser: use native, or leave --hits out", options.engine));
   }
-  if (!options.hits.empty() && options.hits != "own" && options.hits != "embree")
-    throw InputError(fmt::format("--hits is '{}': use own or embree", options.hits));
+  if (!options.hits.empty() && options.hits != "own" && options.hits != "embree") {
+    throw InputError(fmt::format("--hits is '{}'{}", options.hits,
+                                 did_you_mean(options.hits, {"own", "embree"}, "use own or embree")));
+  }
   if (options.hits == "embree" && (!options.traverser.empty() || is_chosen(options, "chip.traverser")))
     throw InputError("--hits embree takes no hits of the machine's traverser: leave --traverser out");
   check_precision(options, engine);

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "enum_array.hpp"
+#include "isa/did_you_mean.hpp"
 #include "isa/input_error.hpp"
 #include "isa/isa.hpp"
 
@@ -50,10 +52,14 @@ inline constexpr ProgramProfile kProgramProfiles[] = {
 inline const ProgramProfile& profile_named(std::string_view name) {
   for (const ProgramProfile& profile : kProgramProfiles)
     if (profile.name == name) return profile;
-  std::string names;
-  for (const ProgramProfile& profile : kProgramProfiles)
-    names += (names.empty() ? "" : ", ") + std::string(profile.name);
-  throw InputError("there is no mix '" + std::string(name) + "' of random programs: take one of " + names);
+  std::vector<std::string> names;
+  std::string all;
+  for (const ProgramProfile& profile : kProgramProfiles) {
+    names.emplace_back(profile.name);
+    all += (all.empty() ? "" : ", ") + names.back();
+  }
+  throw InputError("there is no mix '" + std::string(name) + "' of random programs" +
+                   did_you_mean(name, names, "take one of " + all));
 }
 
 }  // namespace raypool

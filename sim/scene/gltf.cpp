@@ -3,6 +3,7 @@
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <assimp/IOSystem.hpp>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "bits.hpp"
+#include "isa/did_you_mean.hpp"
 #include "scene/far_places.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/mesh_builder.hpp"
@@ -171,11 +173,11 @@ std::optional<Camera> choose_camera(const std::string& path, const std::string& 
                                     const Assembly& assembly, Scene& scene) {
   const Placed* chosen = nullptr;
   size_t orthographic = 0;
-  std::string names;
+  std::vector<std::string> names;
   for (const Placed& placed : assembly.cameras) {
     const GltfCamera& camera = document.cameras[placed.index];
     const std::string name = name_of(camera.name, placed.node, "camera", placed.index);
-    names += (names.empty() ? "" : ", ") + name;
+    names.push_back(name);
     const bool is_wanted = name == wanted || placed.node == wanted;
     if (!camera.fov) ++orthographic;
     if (!wanted.empty() && is_wanted && !camera.fov)
@@ -188,9 +190,11 @@ std::optional<Camera> choose_camera(const std::string& path, const std::string& 
     }
   }
   if (chosen == nullptr && !wanted.empty()) {
-    throw InputError(names.empty()
-                         ? fmt::format("{}: there is no camera in it; leave --camera '{}' out", path, wanted)
-                         : fmt::format("{}: there is no camera '{}' in it; its cameras are {}", path, wanted, names));
+    throw InputError(
+        names.empty()
+            ? fmt::format("{}: there is no camera in it; leave --camera '{}' out", path, wanted)
+            : fmt::format("{}: there is no camera '{}' in it{}", path, wanted,
+                          did_you_mean(wanted, names, fmt::format("its cameras are {}", fmt::join(names, ", ")))));
   }
   if (chosen == nullptr) {
     scene.cameras.clear();

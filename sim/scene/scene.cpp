@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "isa/did_you_mean.hpp"
 #include "scene/far_places.hpp"
 #include "scene/scene_cache.hpp"
 #include "scene/scene_file.hpp"
@@ -123,8 +124,10 @@ constexpr float kLeastDiagonal = 1e-18f;
 constexpr const char* kScenes = "cornell, room, or the path of a .obj, .gltf, .glb or .ply file";
 
 SceneFile load_file(const std::string& path, const std::string& camera) {
-  if (std::error_code none; !std::filesystem::exists(path, none))
-    throw InputError(fmt::format("{}: no such scene; give {}", path, kScenes));
+  if (std::error_code none; !std::filesystem::exists(path, none)) {
+    throw InputError(fmt::format("{}: no such scene{}", path,
+                                 did_you_mean(path, {"cornell", "room"}, fmt::format("give {}", kScenes))));
+  }
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".gltf" || ending == ".glb") return load_gltf(path, camera);

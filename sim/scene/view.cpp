@@ -9,6 +9,7 @@
 #include "files/input_file.hpp"
 #include "files/json_text.hpp"
 #include "files/output_files.hpp"
+#include "isa/did_you_mean.hpp"
 #include "scene/far_places.hpp"
 #include "scene/scene.hpp"
 #include "scene/traversal.hpp"
@@ -21,7 +22,9 @@ using Json = nlohmann::ordered_json;
 void refuse_unknown(const Json& object, const std::vector<std::string>& known, const std::string& where) {
   for (const auto& item : object.items()) {
     if (std::find(known.begin(), known.end(), item.key()) == known.end()) {
-      throw InputError(fmt::format("{}: unknown key '{}'; known are {}", where, item.key(), fmt::join(known, ", ")));
+      throw InputError(
+          fmt::format("{}: unknown key '{}'{}", where, item.key(),
+                      did_you_mean(item.key(), known, fmt::format("known are {}", fmt::join(known, ", ")))));
     }
   }
 }

@@ -8,63 +8,13 @@
 #include <vector>
 
 #include "cli/exit_code.hpp"
+#include "cli/help.hpp"
 #include "cli/version.hpp"
+#include "isa/did_you_mean.hpp"
 #include "isa/input_error.hpp"
 
 namespace raypool {
 namespace {
-
-struct OptionText {
-  std::vector<std::string> names;  ///< with their dashes; none: a positional
-  std::string positional;          ///< its name; empty: none
-  std::string description;
-  std::string type;                 ///< TEXT, UINT, model|rtl, ...; empty: a flag
-  std::vector<std::string> values;  ///< when these are all there are
-  std::string default_value;
-};
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> words = {""};
-  for (const char c : text) {
-    if (c == '|')
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
-}
-
-OptionText describe(const CLI::Option& option) {
-  OptionText text;
-  for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) text.names.push_back("--" + name);
-  text.positional = option.get_positional() ? option.get_name(true) : "";
-  text.description = option.get_description();
-  if (option.get_items_expected_max() > 0) {
-    text.type = option.get_type_name();
-    text.default_value = option.get_default_str();
-    if (text.type.find('|') != std::string::npos) text.values = split(text.type);
-  }
-  return text;
-}
-
-/// Those of option groups too, which are commands without a name.
-std::vector<OptionText> options_of(const CLI::App& app) {
-  std::vector<OptionText> texts;
-  for (const CLI::Option* option : app.get_options([](const CLI::Option*) { return true; }))
-    texts.push_back(describe(*option));
-  for (const CLI::App* group : app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
-    for (const CLI::Option* option : group->get_options([](const CLI::Option*) { return true; }))
-      if (std::none_of(texts.begin(), texts.end(),
-                       [&](const OptionText& text) { return text.names == describe(*option).names; }))
-        texts.push_back(describe(*option));
-  }
-  return texts;
-}
-
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); });
-}
 
 std::string replaced(std::string_view text, std::string_view characters, std::string_view before) {
   std::string result;
@@ -228,7 +178,8 @@ std::string completion(const CLI::App& app, const std::string& shell) {
   if (shell == "bash") return bash(app);
   if (shell == "zsh") return zsh(app);
   if (shell == "fish") return fish(app);
-  throw InputError(fmt::format("there is no completion for shell '{}': use bash, zsh or fish", shell));
+  throw InputError(fmt::format("there is no completion for shell '{}'{}", shell,
+                               did_you_mean(shell, {"bash", "zsh", "fish"}, "use bash, zsh or fish")));
 }
 
 std::string man_page(const CLI::App& app) {

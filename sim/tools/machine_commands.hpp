@@ -21,10 +21,11 @@ class MachineCommands {
   MachineCommands& operator=(const MachineCommands&) = delete;
 
  private:
-  CLI::App* add(const std::string& name, const std::string& what);
+  CLI::App* add(const char* group, const std::string& name, const std::string& what);
   void add_compare_command();
   void add_run_command();
   void add_cosim_command();
+  void add_cosim_output(CLI::App& cosim_app, CLI::Option* replay);
   void add_configurations_command();
   void add_isa_command();
   void add_assembly_command();

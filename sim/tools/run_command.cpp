@@ -18,6 +18,7 @@
 #include "files/output_files.hpp"
 #include "files/unfinished.hpp"
 #include "isa/assembler.hpp"
+#include "isa/did_you_mean.hpp"
 #include "kernel/compute_kernels.hpp"
 #include "kernel/kernel_report.hpp"
 #include "tools/commands.hpp"
@@ -178,7 +179,8 @@ void check_in_memory(const PrintRange& range, const Memory& memory) {
 void prepare_assembly(Job& job, const RunOptions& options) {
   if (!std::filesystem::exists(options.kernel)) {
     throw InputError(fmt::format(
-        "there is no kernel and no file '{}': use saxpy, matmul or the path of an assembly file", options.kernel));
+        "there is no kernel and no file '{}'{}", options.kernel,
+        did_you_mean(options.kernel, {"saxpy", "matmul"}, "use saxpy, matmul or the path of an assembly file")));
   }
   if (options.n) throw InputError("--n is for saxpy and matmul: give an assembly file its size with --arg");
   if (options.arguments.size() > kArguments)

@@ -7,6 +7,7 @@
 
 #include "cli/image_size.hpp"
 #include "files/output_files.hpp"
+#include "isa/did_you_mean.hpp"
 #include "isa/input_error.hpp"
 #include "scene/far_places.hpp"
 #include "scene/hits_check.hpp"
@@ -53,7 +54,12 @@ std::string write_bvh(const Scene& scene, const std::string& path, OutputFiles& 
 
 double megabytes(uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
-int cache_command(bool clear) {
+int cache_command(const std::string& what) {
+  const bool clear = what == "clear";
+  if (!clear && what != "show") {
+    throw InputError(
+        fmt::format("--cache is '{}'{}", what, did_you_mean(what, {"show", "clear"}, "use show or clear")));
+  }
   const std::optional<SceneCache>& cache = SceneCache::of_program();
   if (!cache) throw InputError("nothing is kept of scenes: set XDG_CACHE_HOME to a folder of your own");
   if (clear) {
@@ -74,7 +80,7 @@ int cache_command(bool clear) {
 }  // namespace
 
 int scene_command(const SceneCommandOptions& options) {
-  if (!options.cache.empty()) return cache_command(options.cache == "clear");
+  if (!options.cache.empty()) return cache_command(options.cache);
   const Scene scene = load(options);
   if (!options.write_bvh.empty() && options.write_bvh == options.write_obj)
     throw InputError("--write-obj and --write-bvh name the same file: give them two");

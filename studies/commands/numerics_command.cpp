@@ -1,5 +1,6 @@
 // `raypool numerics`: what each arithmetic mode does to pictures and costs; the catalogue of extremes.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "commands/commands.hpp"
+#include "isa/did_you_mean.hpp"
 #include "numerics/cost.hpp"
 #include "numerics/extreme_parts.hpp"
 #include "numerics/extremes.hpp"
@@ -30,12 +32,13 @@ constexpr uint64_t kSeamRays = 1'000'000;
 
 std::vector<ArithmeticMode> chosen_modes(const std::string& name) {
   if (name == "all") return arithmetic_modes();
-  std::string names;
+  std::vector<std::string> names = {"all"};
   for (const ArithmeticMode& mode : arithmetic_modes()) {
     if (mode.name == name) return {mode};
-    names += ", " + mode.name;
+    names.push_back(mode.name);
   }
-  throw InputError(fmt::format("there is no arithmetic mode '{}': use all{}", name, names));
+  throw InputError(fmt::format("there is no arithmetic mode '{}'{}", name,
+                               did_you_mean(name, names, fmt::format("use {}", fmt::join(names, ", ")))));
 }
 
 UnitMaker unit_maker(Engine engine) {

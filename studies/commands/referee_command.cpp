@@ -55,14 +55,16 @@ void add_referee_options(CLI::App& app, RefereeCommandOptions& options) {
                                  ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 30))
                                  ->capture_default_str();
   CLI::Option* const seed = app.add_option("--seed", options.seed, "of these")->capture_default_str();
-  app.add_option("--corpus", options.corpus, "file of cases instead (docs/use/referee.md)")->excludes(cases, seed);
-  app.add_option("--write", options.write, "only write the cases, with their certificates, into this file");
-  app.add_option("--answers", options.answers, "file of answers, which become a row; may be given several times")
+  app.add_option("--corpus", options.corpus, "cases of a file instead (docs/use/referee.md)")
+      ->type_name("FILE")
+      ->excludes(cases, seed);
+  app.add_option("--write", options.write, "only write the cases, with their certificates")->type_name("FILE");
+  app.add_option("--answers", options.answers, "answers of another program, as a row; may be given several times")
+      ->type_name("FILE")
       ->expected(1, -1)
       ->allow_extra_args(false);
   app.add_option("--on-chip", options.on_chip,
-                 "a whole chip answers too, each case a frame: its model, its Verilog (raypool unit --boundary chip "
-                 "builds it), or both in lockstep")
+                 "a whole chip answers too, each case a frame; raypool unit --boundary chip builds its Verilog")
       ->type_name("model|rtl|lockstep");
   add_config(app, options.config, options.set);
   app.add_flag("--smallest", options.smallest, "the smallest case of each fault");
@@ -77,7 +79,7 @@ std::function<std::unique_ptr<referee::Contender>()> chip_of(const RefereeComman
   if (options.on_chip.empty()) return {};
   const Engine engine = parse_engine(options.on_chip);
   if (engine != Engine::Model && !has_verilog(engine))
-    throw InputError(fmt::format("--on-chip is '{}': use model, rtl or lockstep", options.on_chip));
+    throw InputError(fmt::format("--on-chip is '{}'; use model, rtl or lockstep", options.on_chip));
   const Configuration configuration = load_configuration(options.config, options.set);
   if (!has_traverser(configuration.chip) || configuration.intersection_words != kIntersectionWords) {
     throw InputError(fmt::format(

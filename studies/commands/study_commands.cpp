@@ -2,6 +2,7 @@
 
 #include "arith/narrow_float.hpp"
 #include "cli/command_options.hpp"
+#include "cli/help.hpp"
 #include "machine/traverser/box_ray.hpp"
 
 namespace raypool {
@@ -9,7 +10,10 @@ namespace {
 
 void add_widths_command(CLI::App& app, WidthsOptions& options, uint32_t least, uint32_t most) {
   add_scene(app, options.scene, options.size, options.view, options.look, options.detail);
-  app.add_option("--depth", options.depth, "of the rays")->check(CLI::Range(1, 254))->capture_default_str();
+  app.add_option("--depth", options.depth, "of the rays")
+      ->group(option_group::kScene)
+      ->check(CLI::Range(1, 254))
+      ->capture_default_str();
   app.add_option("--bits", options.bits, "widths, with commas between")
       ->delimiter(',')
       ->check(CLI::Range(least, most))
@@ -30,44 +34,47 @@ StudyCommands::StudyCommands(CLI::App& app, const std::vector<std::string>& comm
 }
 
 CLI::App* StudyCommands::add(const std::string& name, const std::string& what) {
-  return app_.add_subcommand(name, what)->group("Studies");
+  return app_.add_subcommand(name, what)->group(command_group::kStudies);
 }
 
 void StudyCommands::add_numerics_command() {
-  CLI::App* numerics_app =
-      add("numerics", "what each arithmetic mode does to pictures, and costs; seams; offsets; extremes");
+  CLI::App* numerics_app = add("numerics", "compare arithmetic modes: pictures, cost, seams, offsets, hard cases");
   add_config(*numerics_app, numerics_.config, numerics_.set);
   numerics_app->add_option("--mode", numerics_.mode, "all, or one: ieee-exact, flush-newton1, ...")
+      ->type_name("NAME")
       ->capture_default_str();
-  numerics_app->add_option("--size", numerics_.size, "pictures, WIDTHxHEIGHT in pixels")->capture_default_str();
+  numerics_app->add_option("--size", numerics_.size, "of the pictures, in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
   numerics_app->add_option("--depth", numerics_.depth, "of the pictures' rays")
       ->check(CLI::Range(1, 254))
       ->capture_default_str();
-  numerics_app->add_option(
-      "--out", numerics_.out,
-      "folder for numerics.json and plots (default: out/numerics beside the program; installed: in raypool-out)");
-  numerics_app->add_option("--synthesis", numerics_.synthesis,
-                           "folder of synthesis reports (default: synth beside the program)");
-  numerics_app->add_flag("--extremes", numerics_.extremes, "the catalogue of hard cases, by mode and engine");
+  numerics_app
+      ->add_option("--out", numerics_.out,
+                   "numerics.json and plots (default: out/numerics beside the program; installed: in raypool-out)")
+      ->type_name("FOLDER");
+  numerics_app->add_option("--synthesis", numerics_.synthesis, "synthesis reports (default: synth beside the program)")
+      ->type_name("FOLDER");
+  numerics_app->add_flag("--extremes", numerics_.extremes, "run the catalogue of hard cases, by mode and engine");
   numerics_app
       ->add_option("--boundary", numerics_.boundary,
-                   "with --extremes: what is Verilog, the units or whole chips too, small ones with and without a "
-                   "traverser; with --configurations: of which")
+                   "with --extremes: what is Verilog, units or small whole chips too; with --configurations: of which")
       ->type_name("unit|chip")
       ->capture_default_str();
-  numerics_app->add_flag("--catalogue", numerics_.catalogue, "only list those cases, with what is expected of them");
-  numerics_app->add_option("--configurations", numerics_.configurations,
-                           "only write a configuration file of each mode into this folder");
+  numerics_app->add_flag("--catalogue", numerics_.catalogue, "only list those cases, with what is expected");
+  numerics_app->add_option("--configurations", numerics_.configurations, "only write a configuration file of each mode")
+      ->type_name("FOLDER");
   numerics_app->add_flag("--quiet", numerics_.quiet, "no progress");
   numerics_app->callback([this] { code_ = numerics_command(numerics_); });
 }
 
 void StudyCommands::add_significands_command() {
   CLI::App* significands_app =
-      add("significands", "what floats of fewer bits do to a scene's picture, and how few bits are enough");
+      add("significands", "draw a scene with floats of fewer bits: what changes, and how few bits are enough");
   add_scene(*significands_app, significands_.scene, significands_.size, significands_.view, significands_.look,
             significands_.detail);
   significands_app->add_option("--depth", significands_.depth, "of the picture's rays")
+      ->group(option_group::kScene)
       ->check(CLI::Range(1, 254))
       ->capture_default_str();
   add_config(*significands_app, significands_.config, significands_.set);
@@ -76,37 +83,39 @@ void StudyCommands::add_significands_command() {
 }
 
 void StudyCommands::add_widths_commands() {
-  CLI::App* boxes_app = add(
-      "boxes", "what a scene's rays visit when boxes are tested in integers of few bits: nodes and triangles a ray");
+  CLI::App* boxes_app =
+      add("boxes", "test boxes in integers of few bits: nodes and triangles that a scene's rays visit");
   add_widths_command(*boxes_app, boxes_, kLeastBoxBits, kMostBoxBits);
   boxes_app->callback([this] { code_ = boxes_command(boxes_); });
-  CLI::App* triangles_app = add(
-      "triangles", "what triangle tests without double do to a scene's hits and picture, to seams and to hard cases");
+  CLI::App* triangles_app =
+      add("triangles", "test triangles without double: a scene's hits and picture, seams, hard cases");
   add_widths_command(*triangles_app, triangles_, kLeastTimeBits, kMostTimeBits);
   triangles_app->callback([this] { code_ = triangles_command(triangles_); });
 }
 
 void StudyCommands::add_referee_command() {
   CLI::App* referee_app =
-      add("referee", "hits of hard rays and triangles beside rational numbers: ours with every width, and files'");
+      add("referee", "compare hits of hard rays and triangles with rational numbers: ours, and files'");
   add_referee_options(*referee_app, referee_);
   referee_app->callback([this] { code_ = referee_command(referee_); });
 }
 
 void StudyCommands::add_fit_command() {
-  CLI::App* fit_app =
-      add("fit", "what a scene needs of a machine: leaves a configuration with only that, for the other commands");
+  CLI::App* fit_app = add("fit", "find what a scene needs of a machine; leaves a configuration with only that");
   add_scene(*fit_app, fit_.scene, fit_.size, fit_.view, fit_.look, fit_.detail);
   add_config(*fit_app, fit_.config, fit_.set);
-  add_units_and_depth(*fit_app, fit_.units, fit_.depth);
-  fit_app->add_option("--traverser", fit_.traverser, "as --set chip.traverser=NAME");
-  fit_app->add_option("--slower", fit_.slower, "cycles that the whole may take more, in percent")
-      ->type_name("N%")
+  add_depth(*fit_app, fit_.depth);
+  add_units(*fit_app, fit_.units);
+  add_traverser(*fit_app, fit_.traverser);
+  fit_app->add_option("--slower", fit_.slower, "more cycles that the fitted machine may take")
+      ->type_name("PERCENT")
       ->capture_default_str();
-  fit_app->add_option("--out", fit_.out,
-                      "file for the configuration (default: out/fit/NAME.json beside the program; installed: in "
-                      "raypool-out)");
-  fit_app->add_option("--json", fit_.json, "file for all that was found, as JSON");
+  fit_app
+      ->add_option("--out", fit_.out,
+                   "the configuration (default: out/fit/NAME.json beside the program; installed: in raypool-out)")
+      ->type_name("FILE")
+      ->group(option_group::kOutput);
+  fit_app->add_option("--json", fit_.json, "all that was found, JSON")->type_name("FILE")->group(option_group::kOutput);
   fit_app->add_flag("--quiet", fit_.quiet, "no progress");
   fit_app->callback([this] { code_ = fit_command(fit_); });
 }

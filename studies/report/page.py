@@ -9,8 +9,15 @@ from matplotlib.markers import MarkerStyle
 
 from plots import style
 
-from . import area, changes, effects, pictures, point_table, published, rows, speed, trace
+from . import area, changes, effects, pictures, point_table, published, rows, speed, synthesis, trace
 from .point import near
+
+# Of the parts that are not sections of figures: what would fill them.
+PICTURES_MISSING = ("No run here has left a picture; make sim ENGINE=model and make sim ENGINE=native HITS=embree "
+                    "leave two to compare.")
+WORK_MISSING = "No run here has left a trace; make sim ENGINE=model TRACE=1 leaves one."
+SYNTHESIS_MISSING = "There is no synthesis report here; make synth CONFIG=4w4c leaves one."
+POINTS_MISSING = "There is no run here, only synthesis reports; make sim ENGINE=model makes one."
 
 TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
 
@@ -50,6 +57,32 @@ def sections_of(sources):
     ]
 
 
+def parts_of(sections, sources, drawn, traces):
+    """(name, title, why it is missing) of every part of the page, in order; empty: it has something to show."""
+    points = "" if sources.points else POINTS_MISSING
+    return [
+        *((section.name, section.title, "" if section.figures else section.missing) for section in sections),
+        ("synthesis", "Synthesis reports", "" if sources.synthesis else SYNTHESIS_MISSING),
+        ("pictures", "Pictures", "" if drawn else PICTURES_MISSING),
+        ("work", "The machine at work", "" if traces else WORK_MISSING),
+        ("points", "All points", points),
+        ("machines", "Machines", points),
+    ]
+
+
+def contents_of(sources):
+    """'21 points of 3 sweeps, 1 single run'."""
+    words = []
+    if sources.sweeps:
+        points = sum(len(sweep.points) for sweep in sources.sweeps)
+        words.append(f"{several_words(points, 'point')} of {several_words(len(sources.sweeps), 'sweep')}")
+    if sources.runs:
+        words.append(several_words(len(sources.runs), "single run"))
+    if sources.synthesis:
+        words.append(several_words(len(sources.synthesis), "synthesis report"))
+    return ", ".join(words)
+
+
 def draw(sections):
     """Numbers the figures, and has every plot drawn."""
     panels = 0
@@ -84,6 +117,7 @@ def render(sources, folders):
     drawn = pictures.collect(points, notes)
     traces = trace.collect(points, notes)
     columns = point_table.columns(points) if points else []
+    parts = parts_of(sections, sources, drawn, traces)
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
     environment.globals.update(
@@ -91,8 +125,11 @@ def render(sources, folders):
         engines_and_machines=pictures.engines_and_machines, arithmetic_label=pictures.arithmetic_label,
         code=lambda value: json.dumps(value), several=several_words)
     page = environment.get_template("page.html").render(
-        variables=markupsafe.Markup(style.css()), sections=sections, sources=sources, points=points, notes=notes,
-        pictures=drawn, traces=traces, alus=style.ALUS, columns=columns,
+        variables=markupsafe.Markup(style.css()), sections=[section for section in sections if section.figures],
+        present=[(name, title) for name, title, missing in parts if not missing],
+        absent=[(title, missing) for _, title, missing in parts if missing], contents=contents_of(sources),
+        synthesis=synthesis.table(sources.synthesis), notes=notes, pictures=drawn, traces=traces, alus=style.ALUS,
+        columns=columns,
         rows=point_table.rows(points, columns), machines=point_table.machines(points),
         command=f"make report FROM={shlex.quote(' '.join(near(folder) for folder in folders))}",
         versions=versions_of(points))

@@ -7,8 +7,10 @@ class SweepError(Exception):
 
 
 def nearest(name, known):
-    """What a sentence about an unknown name ends with."""
-    near = difflib.get_close_matches(name, sorted(known), n=3, cutoff=0.4)
+    """What a sentence about an unknown name ends with: a question for at most three that it may be."""
     # A path may be given without its beginning.
-    near += [each for each in sorted(known) if each.endswith("." + name) and each not in near]
-    return "; near to it: " + ", ".join(near[:4]) if near else ""
+    near = [each for each in sorted(known) if each.endswith("." + name)]
+    near = (near or difflib.get_close_matches(name, sorted(known), n=3))[:3]
+    if not near:
+        return ""
+    return f": did you mean {', '.join(near[:-1])}{' or ' if near[1:] else ''}{near[-1]}?"

@@ -134,8 +134,8 @@ def check_form(path, document):
     place = f"{path}: {place}: " if place else f"{path}: "
     if error.validator == "additionalProperties":
         unknown = next(key for key in document if key not in schema["properties"])
-        raise SweepError(f"{place}there is no '{unknown}'{nearest(unknown, schema['properties'])}; there are "
-                         f"{', '.join(key for key in schema['properties'] if key[0] != '$')}")
+        raise SweepError(f"{place}there is no '{unknown}'{nearest(unknown, schema['properties'])} (there are "
+                         f"{', '.join(key for key in schema['properties'] if key[0] != '$')})")
     if error.validator in ("minItems", "minLength"):
         raise SweepError(f"{place}is empty: give at least one value, or leave it out")
     kinds = error.validator_value if isinstance(error.validator_value, list) else [error.validator_value]

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The page: studies/tests/report_test.py RAYPOOL [TEST]...
 
-It is one well-formed file that asks no network, has every section, and says of every figure in words what it shows and
-which command makes it; its figures are those of the reports; what is broken is named and left out."""
+It is one well-formed file that asks no network, has every section that there is data for, and says of every figure in
+words what it shows and which command makes it; its figures are those of the reports; what is broken is named and left
+out."""
 import csv
 import html.parser
 import http.server
@@ -23,7 +24,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RAYPOOL = ""
 sys.path[:0] = [str(ROOT / "studies"), str(ROOT / "scripts")]
 SECTIONS = ("changes", "published", "speed", "alus", "cycles", "ceilings", "units", "policies", "fields", "area",
-            "power", "pictures", "work", "points", "machines")  # fmt: skip
+            "power", "synthesis", "pictures", "work", "points", "machines")  # fmt: skip
+OF_EVERY_RUN = ["points", "machines"]
 VOID = {"meta", "link", "br", "img", "input", "hr", "path", "use", "rect"}
 TINY = {"scene": "cornell", "detail": 0.01, "size": "16x16", "depth": 2, "engine": "model"}
 EXPERIMENTS = {
@@ -128,6 +130,10 @@ class ReportTest(unittest.TestCase):
             action(report, number)
             path.write_text(json.dumps(report))
 
+    def absent(self, page):
+        """(title, what would fill it) of each section that is left out."""
+        return re.findall(r"<dt>([^<]+)</dt><dd>([^<]+)</dd>", page)
+
     def section(self, page, name):
         begin = page.index(f'<section id="{name}">')
         return page[begin : page.index("</section>", begin)]
@@ -163,8 +169,8 @@ class Page(ReportTest):
         reader = Reader(page)
         self.assertFalse(reader.errors)
         self.assertEqual(len(reader.ids()), len(set(reader.ids())))
-        for name in SECTIONS:
-            self.assertIn(name, reader.sections)
+        self.assertEqual([name for name in SECTIONS if name not in reader.sections],
+                         ["published", "area", "power", "synthesis", "work"])  # fmt: skip
         ids = set(reader.ids())
         for tag, attributes in reader.elements:
             self.assertNotIn(tag, ("iframe", "object", "embed"))
@@ -230,20 +236,49 @@ class Page(ReportTest):
             for head, field in (("cycles", "cycles"), ("Mrays/s", "mrays_per_second"), ("rays", "rays")):
                 self.assertEqual(found[head], "" if report[field] is None else repr(report[field]))
 
-    def test_what_is_absent_names_a_command(self):
+    def sections(self, page):
+        """Those of the page, which its contents list too, and no others are linked."""
+        found = re.findall(r'<section id="([a-z]+)">', page)
+        contents = re.search(r"<nav .*?</nav>", page, re.S)[0]
+        self.assertEqual(re.findall(r'href="#([a-z]+)"', contents), found)
+        self.assertEqual(len(found) + len(self.absent(page)), len(SECTIONS))
+        self.assertEqual(Reader(page).errors, [])
+        return found
+
+    def run_of(self, engine):
         out = self.folder / "run"
-        words = ["sim", "cornell", "--size", "8x8", "--config", "1w1c", "--engine", "functional", "--quiet"]
+        words = ["sim", "cornell", "--size", "8x8", "--config", "1w1c", "--engine", engine, "--quiet"]
         subprocess.run([RAYPOOL, *words, "--out", str(out)], check=True)
-        page = self.page(out)
+        return out
+
+    def test_a_single_run_has_only_sections_of_a_run(self):
+        page = self.page(self.run_of("model"))
+        self.assertEqual(self.sections(page), ["alus", "cycles", "ceilings", "pictures", *OF_EVERY_RUN])
+        self.assertIn('<p class="lead">1 single run.', page)
+
+    def test_a_sweep_has_only_sections_of_a_sweep(self):
+        page = self.page(self.folder / "sweeps/question")
+        self.assertEqual(self.sections(page), ["changes", "alus", "cycles", "ceilings", "pictures", *OF_EVERY_RUN])
+        self.assertIn('<p class="lead">3 points of 1 sweep.', page)
+
+    def test_a_synthesis_report_has_only_its_table(self):
+        self.synthesis("2w4c", ["2w4c"], 0.7, power=0.1)
+        page = self.page(self.folder / "synth")
+        self.assertEqual(self.sections(page), ["synthesis"])
+        row = re.search(r'<tr><th scope="row">2w4c.*?</tr>', self.section(page, "synthesis"))[0]
+        self.assertEqual(re.findall(r"<td>([^<]*)</td>", row), ["osu018", "700", "0.70", "312", "0.10"])
+        self.assertIn('<p class="lead">1 synthesis report.', page)
+
+    def test_what_is_absent_names_a_command(self):
+        page = self.page(self.run_of("functional"))
+        self.assertEqual(self.sections(page), ["pictures", *OF_EVERY_RUN])
         makefiles = (ROOT / "Makefile").read_text() + (ROOT / "studies/studies.mk").read_text()
         targets = set(re.findall(r"^([a-z-]+):", makefiles, re.M))
-        for name in set(SECTIONS) - {"pictures", "points", "machines"}:  # which every run fills
-            words = re.search(r'<p class="missing">([^<]*)</p>', self.section(page, name))
-            self.assertIsNotNone(words, name)
-            named = re.findall(r"make ([a-z-]+)", words[1])
-            self.assertTrue(named, words[1])
+        for title, words in self.absent(page):
+            named = re.findall(r"make ([a-z-]+)", words)
+            self.assertTrue(named, title)
             self.assertLessEqual(set(named), targets)
-            for path in re.findall(r"configs/[\w/]+\.json", words[1]):
+            for path in re.findall(r"configs/[\w/]+\.json", words):
                 self.assertTrue((ROOT / path).exists(), path)
         self.assertIn("--engine native --hits embree", self.section(page, "pictures"))
 
@@ -423,7 +458,7 @@ class Figures(ReportTest):
         (folder / "trace.json").write_text('{"traceEvents": []}')
         page = self.page(folder.parent)
         self.assertIn("traced/trace.json is not a trace", page)
-        self.assertIn("TRACE=1 leaves one", self.section(page, "work"))
+        self.assertIn("TRACE=1 leaves one", dict(self.absent(page))["The machine at work"])
 
     def test_the_question_has_its_answer(self):
         self.synthesis("8w8c", ["8w8c"], 0.6)
