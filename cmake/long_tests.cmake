@@ -27,6 +27,7 @@ endfunction()
 
 # What takes longest of all and is declared last has its share before the others, which then fill up evenly.
 raypool_share(RAYPOOL_SHARE_OF_NEW_ALU 500)
+raypool_share(RAYPOOL_SHARE_OF_FIRST_CHANGE 450)
 raypool_share(RAYPOOL_SHARE_OF_FOLLOW 400)
 
 # raypool_long(SECONDS TEST...): all of these tests, each of about so many processor-seconds from bare, in one share.
