@@ -212,12 +212,12 @@ faults: setup-sim setup-test configured-ON program ## faults in the Verilog: wha
 follow: setup-sim setup-follow program ## one pixel through the chip in Verilog, from a waveform
 	@$(FOLLOW) $(call options,$(call said,SCENE CONFIG CUS SIZE DEPTH) SET $(LOOK) PIXEL RAY STATION OUT) $(ARGS)
 
-tour: setup-sim setup-follow program ## write what docs/start/from-obj-to-pixel.md shows
+tour: setup-sim setup-follow program ## write the pictures and quotes of the tour, docs/start/from-*.md
 	@$(FOLLOW) --out $(BUILD)/out/tour | tail -n 2
 	@for file in pixel.png time.svg way.svg export.svg node.svg triangle.svg launch.svg import.svg frame.svg; do \
 	  cp "$(BUILD)/out/tour/$$file" "docs/images/tour-$$file"; \
 	done
-	@scripts/quoted_output.py --update docs/start/from-obj-to-pixel.md
+	@scripts/quoted_output.py --update docs/start/from-*-to-*.md
 
 isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
 	@$(RAYPOOL) isa --write
