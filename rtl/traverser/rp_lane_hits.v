@@ -44,7 +44,7 @@ module rp_lane_hits #(
   input  wire [SLOT_BITS-1:0] key_slot_i,
   output wire                 key_valid_o,       // there is a hit
   output wire [KEY_BITS-1:0]  key_o,
-  // so does who takes a ray that is done, for the hit
+  // so does the block that takes a finished ray, for the hit
   input  wire [SLOT_BITS-1:0] done_slot_i,
   output wire                 done_hit_o,
   output wire [30:0]          done_t_o,

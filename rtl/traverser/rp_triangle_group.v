@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // A triangle pipe, and the lanes that share it: each cycle one of those that have a test begins it, in rotation. What
-// the pipe asks for is asked of all lanes, and who answers is the lane whose test it is.
+// the pipe asks for is asked of all lanes, and the lane that owns the test answers.
 // Must be given: what triangle_pipe must.
 `default_nettype none
 module rp_triangle_group #(

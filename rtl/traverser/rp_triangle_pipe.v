@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Whether and where a ray hits a triangle, from the triangle's plane: docs/machine/triangle-test.md defines it.
 // A test a cycle, its result 30 + BITS / 2 cycles later; it never waits. Tests of one ray may follow each other at
-// once: what may change, its best hit, each is told in the cycle before its result, so who answers must take the result
+// once: what may change, its best hit, each is told in the cycle before its result, so the answer must take the result
 // that is shown then into account. Each asks a cycle before it is told. Must be given: corners, and what the set-up of
 // a valid ray has, so that no difference is infinite; a limit above zero, and a best hit that is not before zero.
 `default_nettype none
