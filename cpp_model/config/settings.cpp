@@ -84,7 +84,7 @@ Json parse_value(const ConfigurationField& field, const std::string& text) {
       if (std::find(names.begin(), names.end(), text) != names.end()) return text;
       break;
     }
-    case Range::Form::Instructions: {  // imul,sar; nothing: none. Who reads the file checks their names
+    case Range::Form::Instructions: {  // imul,sar; nothing: none. Reading the file checks their names
       Json list = Json::array();
       std::istringstream names(text);
       for (std::string name; std::getline(names, name, ',');) list.push_back(name);
