@@ -361,7 +361,7 @@ TEST(FunctionalCore, RoutinesOfTheRayMemoryMoveImportsAndExports) {
   EXPECT_EQ(rfb.rays[0][0], as_bits(2.5f)) << "results of an earlier step need not change";
 }
 
-TEST(FunctionalCore, APackageThatNobodyExpectsIsRefused) {
+TEST(FunctionalCore, RefusesAnUnexpectedPackage) {
   Machine machine(assembled("exit"));
   EXPECT_THROW(machine.core.import_package({}), std::logic_error);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_triangle_pipe.v: whether and where a ray hits a triangle, from the triangle's plane, without double.
-// docs/machine/triangle-test.md says why it is so.
+// docs/machine/triangle-test.md explains why.
 #pragma once
 
 #include <cmath>
@@ -88,7 +88,7 @@ struct TriangleResult {
 /// The pipe: it begins a test a cycle, and never waits.
 class TrianglePipe {
  public:
-  /// What a ray says to a test that asks.
+  /// What a ray answers a test that asks.
   struct Limit {
     float limit;  ///< the ray's
     int scale;    ///< its t is internal t x 2^scale
