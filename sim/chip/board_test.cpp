@@ -154,7 +154,7 @@ TEST(Board, TellsOfAFault) {
   EXPECT_THROW(board.draw(), ChipFault);
 }
 
-// ---- A traverser inside, whose memory holds no tree, or loses something
+// ---- A traverser inside, with a malformed tree in its memory, or a memory that loses something
 
 constexpr uint32_t kCountWord = 3, kFirstChild = 10;
 
@@ -251,8 +251,7 @@ TEST(Board, SaysWhatOfTheTreeIsNone) {
          [](TreeBoard& board) { board.tree.setup.root = kLeafBit | 0x1fffffff; });
   expect(TreeFaultCode::Children, ": node 0, at byte 0 of the traverser's memory, has not one to four children",
          [](TreeBoard& board) { board.change(0, kCountWord, board.word(0, kCountWord) & 0xffffff); });
-  expect(TreeFaultCode::Order,
-         ": node 0, at byte 0 of the traverser's memory, has a child whose number is not above its",
+  expect(TreeFaultCode::Order, ": node 0, at byte 0 of the traverser's memory, has a child with a number not above its",
          [](TreeBoard& board) { board.change(0, kFirstChild, 0); });
   expect(TreeFaultCode::Visits, ": a ray comes to more nodes than the 2 that there are, at last to node ",
          [](TreeBoard& board) {

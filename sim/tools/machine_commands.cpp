@@ -199,7 +199,9 @@ void MachineCommands::add_bench_command() {
 
 void MachineCommands::add_descriptions_command() {
   CLI::App* completion_app = add("completion", "print what completes raypool's commands and options in a shell");
-  completion_app->add_option("shell", shell_, "whose")->type_name("bash|zsh|fish")->capture_default_str();
+  completion_app->add_option("shell", shell_, "the shell to complete in")
+      ->type_name("bash|zsh|fish")
+      ->capture_default_str();
   completion_app->callback([this] { std::fputs(completion(app_, shell_).c_str(), stdout); });
   CLI::App* man_app = add("man", "print the man page: raypool man | man -l -");
   man_app->callback([this] { std::fputs(man_page(app_).c_str(), stdout); });

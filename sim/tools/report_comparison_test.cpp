@@ -203,7 +203,7 @@ struct TwoPictures {
 
 TEST(ReportComparison, SaysWhyPixelsDiffer) {
   const TwoPictures pictures;
-  EXPECT_FALSE(pictures.compared().contains("causes")) << "nobody has left what rays come to";
+  EXPECT_FALSE(pictures.compared().contains("causes")) << "no run has left what rays come to";
   const std::string map = pictures.folder.path("map.png");
   EXPECT_THROW(pictures.compared(map), InputError);
   EXPECT_FALSE(fs::exists(map));
