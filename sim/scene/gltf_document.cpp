@@ -1,6 +1,6 @@
-// Assimp believes what a document says of itself: it reads beyond buffers, leaves out triangles whose indices are out
-// of range, takes whole numbers for floats, follows nodes without end and poses skins wrongly. So the document is
-// checked here, and only plain geometry is handed on.
+// Assimp trusts what a document declares: it reads beyond buffers, leaves out triangles with indices out of range,
+// takes whole numbers for floats, follows nodes without end and poses skins wrongly. So the document is checked here,
+// and only plain geometry is handed on.
 #include "scene/gltf_document.hpp"
 
 #include <fmt/format.h>

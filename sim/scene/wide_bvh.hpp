@@ -1,6 +1,6 @@
 // The tree for speed alone: nodes of eight children, made of the chip's tree (bvh.hpp), and how a ray walks it. What it
-// hits is what it hits there, as traversal.hpp says: boxes are boxes of that tree, and box test and triangle test are
-// the same operations in the same order.
+// hits is what it hits there, as promised in traversal.hpp: boxes are boxes of that tree, and box test and triangle
+// test are the same operations in the same order.
 #pragma once
 
 #include <cstdint>
@@ -84,7 +84,7 @@ class WideVisits {
     visit(blocks_[number], number | kLeafBit);
   }
 
-  uint64_t nodes = 0, triangles = 0;  ///< whose boxes, and which themselves, are tested
+  uint64_t nodes = 0, triangles = 0;  ///< nodes with tested boxes, and tested triangles
   std::vector<uint32_t> places;       ///< nodes and, with kLeafBit, blocks, each when it is come to first
 
  private:
