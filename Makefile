@@ -185,7 +185,7 @@ traverser-trees: setup-sim setup-test ## random trees, and garbage, in the trave
 	@scripts/build.sh $(BUILD)/benches traverser_test traverser_large_test
 	@for bench in traverser_test traverser_large_test; do \
 	  RAYPOOL_TREES="$$TREES" RAYPOOL_SEED="$$SEED" \
-	    $(BUILD)/benches/tb/$$bench --gtest_filter='*OfChance*' --gtest_brief=1 $(ARGS); \
+	    $(BUILD)/benches/tb/$$bench --gtest_filter='*.Random*' --gtest_brief=1 $(ARGS); \
 	done
 
 #: variables of make faults

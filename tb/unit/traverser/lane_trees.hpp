@@ -99,7 +99,7 @@ inline LaneRay lane_ray(const RayQuery& query, const Bounds& bounds, uint32_t bi
   return ray;
 }
 
-/// What a ray does. Of what is no tree it ends with a fault.
+/// What a ray does. Of a malformed tree it ends with a fault.
 struct Walk {
   static constexpr uint32_t kLeafLine = 1u << 31;
   std::vector<uint32_t> lines;  ///< of nodes, and of leaves with kLeafLine, in their order
