@@ -39,7 +39,7 @@ struct Source {
   /// Of the catalogue all, or those that units have, or the others.
   bool in_units, beside_units;
   bool judged;   ///< survivors have judgements
-  bool reports;  ///< say where the fault is: not of a netlist, nor of most benches
+  bool reports;  ///< name the place of the fault: not of a netlist, nor of most benches
 };
 
 const std::map<std::string, Source> kSources = {
