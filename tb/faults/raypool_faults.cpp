@@ -66,9 +66,9 @@ struct Options {
 struct Fault {
   int number = 0;
   std::string file;  ///< of rtl/, or what stands for it where a tool has made the logic
-  std::string mistake;
+  std::string what;
 
-  std::string id() const { return file + ": " + mistake; }
+  std::string id() const { return file + ": " + what; }
 };
 
 /// What `python3 -m faults` has left: of the faults those that the options leave, and whether all that are judged are

@@ -1,4 +1,4 @@
-// Does a lockstep's report send its reader to the right place? Where a mistake is, and which modules instantiate which.
+// Does a lockstep's report send its reader to the right place? Where a fault is, and which modules instantiate which.
 #pragma once
 
 #include <map>
@@ -33,7 +33,7 @@ enum class Verdict { Right, Parent, Wrong, None };
 /// Of the files named, against that of the fault: itself, or one that instantiates it.
 Verdict judge(const Hierarchy& hierarchy, const std::vector<std::string>& named, const std::string& file);
 
-/// Whether the mistake's file is the first or the second of those named.
+/// Whether the fault's file is the first or the second of those named.
 bool named_early(const std::vector<std::string>& named, const std::string& file);
 
 }  // namespace raypool::faulty
