@@ -185,7 +185,7 @@ def pieces(folder, sources, flags, scratch):
 
 
 def tidy(piece, flags):
-    """What clang-tidy says of a piece, and whether it is content."""
+    """What clang-tidy reports of a piece, and whether it is content."""
     run = subprocess.run(["clang-tidy", "--quiet", f"--config-file={ROOT / '.clang-tidy'}", piece.file, "--", *flags],
                          capture_output=True, text=True)
     text = "\n".join(line for line in (run.stdout + run.stderr).splitlines() if not NOISE.match(line))

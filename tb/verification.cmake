@@ -110,7 +110,7 @@ if(IVERILOG)
   add_test(NAME diagrams COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${scripts} python3 -m diagrams ${raypool_program}
     ${CMAKE_BINARY_DIR}/diagrams --check)
   set_tests_properties(diagrams PROPERTIES TIMEOUT 60)
-  raypool_built_test(icarus_notices_x 100 raypool_chip_frames ${scripts}/tests/icarus_notices.sh ${raypool_program}
-    ${chip_frames} ${CMAKE_BINARY_DIR}/icarus/notices)
-  set_tests_properties(icarus_notices_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small)
+  raypool_built_test(icarus_detects_x 100 raypool_chip_frames ${scripts}/tests/icarus_detects.sh ${raypool_program}
+    ${chip_frames} ${CMAKE_BINARY_DIR}/icarus/detects)
+  set_tests_properties(icarus_detects_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small)
 endif()

@@ -1,4 +1,4 @@
-"""The scene, and what a ray hits in it: reckoned here in double precision from the files that raypool scene writes
+"""The scene, and what a ray hits in it: computed here in double precision from the files that raypool scene writes
 (docs/use/tree-file.md), without a line of what the chip's traverser is made of."""
 import math
 import struct
@@ -193,7 +193,7 @@ class Light:
     free: bool = True  # of a shadow ray
 
 
-class Reckoning:
+class HostPixel:
     """The light of one pixel, from the camera on: `rays` by the names of packages.name_of()."""
 
     def __init__(self, tree, materials, view, offset, size, depth):

@@ -60,7 +60,7 @@ def followed(lines, names):
     longest = max(map(len, codes), default=0)
     for line in lines:
         kind = line[0]
-        if kind == 0x62:  # b: a bus, whose code is its end
+        if kind == 0x62:  # b: a bus; its code is the end
             place = line.rfind(b" ", -longest - 2)
             if place > 0 and line[place + 1 : -1] in codes:
                 yield line

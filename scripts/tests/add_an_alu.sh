@@ -1,7 +1,7 @@
 #!/bin/bash
 # docs/develop/add-an-alu.md works as it stands: scripts/tests/add_an_alu.sh FOLDER
-# Copies the sources to FOLDER/tree and does what the page's marked blocks say, in their
-# order. A comment before a block marks it:
+# Copies the sources to FOLDER/tree and does what the page's marked blocks ask for, in their order. A comment before a
+# block marks it:
 #   file: PATH                      the block is a new file
 #   insert: PATH, after: TEXT       the block goes behind the only line of the file that holds TEXT
 #   run            run, fails       commands that must succeed, or fail

@@ -183,7 +183,7 @@ refuses "saxpy of nothing" "--n is 0: saxpy takes a size from 1 to" "$raypool" r
 refuses "no cycles" "--cycles" "$raypool" run saxpy --cycles 0
 # Some 11 million cycles in which nothing is transferred: a limit that was given is the limit.
 counts=("$raypool" run "$folder/count.asm" --config 4w4c --threads 4 --quiet)
-refuses "silent program without a limit" "for 10000000 cycles .* say how long with --cycles; .*unit 0: running" \
+refuses "silent program without a limit" "for 10000000 cycles .* set a limit with --cycles; .*unit 0: running" \
   "${counts[@]}"
 refuses "silent program with a limit" "the limit of 2000000 cycles has passed; " "${counts[@]}" --cycles 2000000
 if "${counts[@]}" --cycles 20000000 > "$folder/stdout" 2>&1 && grep -q ' cycles$' "$folder/stdout"; then
