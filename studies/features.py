@@ -125,7 +125,7 @@ def main(words):
     elif len(words) == 3 and words[0] == "way":
         plot_way(words[1], words[2])
     else:
-        raise ExperimentsError("say alone TABLE.json, area TABLE.json, or way TABLE.json [PICTURE.png]")
+        raise ExperimentsError("give alone TABLE.json, area TABLE.json, or way TABLE.json [PICTURE.png]")
 
 
 if __name__ == "__main__":

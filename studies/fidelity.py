@@ -51,7 +51,7 @@ LEVELS = (
     Level("rtl", ("--engine", "rtl"), exact=True, verilated=True),
 )
 HARDWARE = LEVELS[-1].name
-# What reports of one frame may have of their own: who drew it, and how fast.
+# What reports of one frame may have of their own: which engine drew it, and how fast.
 OF_THE_RUN = ("command", "engine", "boundary", "hits", "wall_seconds", "simulation_seconds", "simulated_per_second")
 # Options of raypool sim that are passed on; those with a default name the folder.
 DEFAULTS = {"scene": "room", "config": "8w8c", "units": "1", "size": "200x200", "depth": "3"}

@@ -29,7 +29,8 @@ std::string what(const TreeFault& fault, const TreeSetup& tree) {
                          byte);
     case TreeFaultCode::Order:
       return fmt::format(
-          "node {}, at byte {} of the traverser's memory, has a child with a number not above its own, from which a " "ray " "might come back for ever",
+          "node {}, at byte {} of the traverser's memory, has a child with a number not above its own, from which a "
+          "ray might come back for ever",
           fault.line, byte);
     case TreeFaultCode::Visits:
       return fmt::format(

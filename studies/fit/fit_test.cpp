@@ -129,7 +129,7 @@ void expect_same_machine(const Configuration& configuration) {
   EXPECT_EQ(to_json(parse_configuration(text, "the file")), to_json(configuration)) << text;
 }
 
-TEST(ShortestFile, SaysWhatIsNotAsItIsWithoutBeingSaid) {
+TEST(ShortestFile, HasWhatDiffersFromTheDefaults) {
   Configuration configuration;
   configuration.name = "small";
   configuration.data_cache_bytes = 512;

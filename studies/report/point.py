@@ -92,7 +92,7 @@ class Point:
 
     @property
     def command(self):
-        """That makes this run again, as somebody types it in the project's folder."""
+        """That makes this run again, as you type it in the project's folder."""
         words = iter(self.report["command"][1:])
         kept = ["raypool"]
         for word in words:

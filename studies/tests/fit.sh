@@ -26,7 +26,7 @@ import json, sys
 found, report = (json.load(open(path)) for path in sys.argv[1:])
 assert found["changes"] and found["cycles"]["fitted"] <= found["cycles"]["most"], found["cycles"]
 assert report["cycles"] == found["cycles"]["fitted"], (report["cycles"], found["cycles"])
-assert report["configuration"] == found["fitted"], "the file says another machine"
+assert report["configuration"] == found["fitted"], "the file has another machine"
 CHECK
   expect "$what: fitted again it loses nothing more" 0 "nothing: the frame needs all of it" "$raypool" fit \
     "${frame[@]}" --config "$machine" --slower 0 --out "$folder/again.json"

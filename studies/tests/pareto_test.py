@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """make pareto: studies/tests/pareto_test.py RAYPOOL. Pictures of a tiny frame; areas are those that the tests name.
 
-The front is what nothing beats; table, pareto.json and pareto.svg say the same; no two names of the plot lie on each
-other; the pictures are those of the arithmetic that a name means; what cannot be used gets a sentence.
+The front is what nothing beats; table, pareto.json and pareto.svg agree; no two names of the plot lie on each other;
+the pictures are those of the arithmetic that a name means; what cannot be used gets a sentence.
 """
 import contextlib
 import io
@@ -49,7 +49,7 @@ class Fronts(unittest.TestCase):
 
 
 class Results(unittest.TestCase):
-    """Of machines whose areas and pictures are known."""
+    """Of machines with known areas and pictures."""
 
     def found(self, *machines):
         """(name, logic kGE, share of pixels that are off)"""

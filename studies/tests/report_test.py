@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The page: studies/tests/report_test.py RAYPOOL [TEST]...
 
-It is one well-formed file that asks no network, has every section, and says of every figure in words what it shows and
-which command makes it; its figures are those of the reports; what is broken is named and left out."""
+It is one well-formed file that asks no network, has every section, and describes every figure in words,
+with the command that makes it; its figures are those of the reports; what is broken is named and left out."""
 import csv
 import html.parser
 import http.server
@@ -50,7 +50,7 @@ def environment():
 
 
 class Reader(html.parser.HTMLParser):
-    """Ids, links and texts of a page whose elements are closed in their order."""
+    """Ids, links and texts of a page with elements that are closed in their order."""
 
     def __init__(self, text):
         super().__init__()
@@ -194,7 +194,7 @@ class Page(ReportTest):
         figures = re.findall(r'<figure id="figure-\d+">.*?</figure>', page, re.S)
         self.assertGreater(len(figures), 6)
         for figure in figures:
-            self.assertRegex(figure, r'<p class="says">[^<]*\d')
+            self.assertRegex(figure, r'<p class="finding">[^<]*\d')
             self.assertRegex(figure, r"<code>make sweep EXPERIMENT=\S+\.json</code>")
             self.assertRegex(figure, r"raypool \d+\.\d+\.\d+")
             self.assertRegex(figure, r'href="#machine-\d+"')
@@ -303,7 +303,7 @@ class Refusals(ReportTest):
 
 
 class Figures(ReportTest):
-    """What single figures say."""
+    """What single figures show."""
 
     def test_published_tables(self):
         with open(ROOT / "configs/experiments/published.csv", encoding="utf-8") as file:
@@ -553,7 +553,7 @@ class Browser(ReportTest):
             server.shutdown()
         self.assertEqual(urls, {f"{place}/picture.png", f"{place}/data"})
 
-    def test_it_fits_and_asks_nobody(self):
+    def test_it_fits_and_asks_no_network(self):
         text = self.page()
         path = self.folder / "index.html"
         path.write_text(text.replace("<style>", MEASURE + "<style>", 1))

@@ -31,7 +31,7 @@ case "$1 $* " in
   "sim "*--modules*) ;;
   "sim "*--depth=13*) [ -e {folder}/works ] || {{ echo 'raypool: depth 13 brings bad luck' >&2; exit 3; }} ;;
   "sim "*--depth=7*)
-    # Half-written until somebody kills it.
+    # Half-written until it is killed.
     if [ -e {folder}/hang ]; then
       {raypool} "$@"; truncate -s 100 "$out/report.json"
       echo "$SLURMD_NODENAME $SLURM_JOB_ID" > {folder}/hang; mv {folder}/hang {folder}/hangs
