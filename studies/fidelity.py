@@ -281,7 +281,7 @@ def print_tables(found):
     repeated = len(found["levels"][0]["wall_seconds"]["runs"])
     print(title(found) + (f"; medians of {repeated} runs" if repeated > 1 else ""))
     header = ["level", "   wall s", *(["  spread"] if repeated > 1 else []), "drawing s",
-              f"speed-up over {found['speed_up_over']}", "thousand rays/s", "thousand cycles/s", "cycles", "error",
+              f"speed-up over {found['speed_up_over']}", "krays/s", "kcycles/s", "cycles", "error",
               "Mrays/s", "picture"]  # fmt: skip
     speeds, uses = [header], []
     for row in found["levels"]:
