@@ -8,7 +8,7 @@
 
 namespace raypool {
 
-/// Of a picture, WIDTHxHEIGHT in pixels, where nobody says it: what is drawn in half a minute by Verilog too.
+/// Of a picture, WIDTHxHEIGHT in pixels, where none is given: what is drawn in half a minute by Verilog too.
 constexpr char kDefaultSize[] = "200x200";
 
 /// Camera and light on the command line; what is empty stays as the view has it.
