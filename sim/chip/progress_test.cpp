@@ -236,7 +236,7 @@ struct DeafMemory : PortsAlone {
   }
 };
 
-TEST(Progress, ABoardWhoseMemoryHearsNothingIsLockedUp) {
+TEST(Progress, ABoardThatCannotReachItsMemoryIsLockedUp) {
   for (const TraverserName traverser : {TraverserName::Static, TraverserName::Hardware}) {
     DrawnFrame frame(pile(20), traverser, one_ray);
     frame.run.options.limits.cycles = 100 * kPeriod;

@@ -340,7 +340,7 @@ TEST(Shrinking, LeavesTheCulpritAndAValidProgram) {
   EXPECT_GT(shrunk, 3);
 }
 
-TEST(Stalls, OpenAndShutAsTheirStyleSays) {
+TEST(Stalls, OpenAndShutByTheirStyle) {
   for (int style = 0; style < kStallStyles; ++style) {
     for (int port = 0; port < kPorts; ++port) {
       StallPlan plan;

@@ -450,7 +450,7 @@ TEST_F(Gltf, NamesDoNotSpoilALineOfOutput) {
   EXPECT_EQ(load(document).scene.cameras[2], "Si  [1mde");
 }
 
-TEST_F(Gltf, TheEndingSaysTheFormat) {
+TEST_F(Gltf, TheEndingGivesTheFormat) {
   const std::string other = write("a.stl", "solid");
   EXPECT_EQ(
       refusal([&] { load_scene(other); }),

@@ -149,7 +149,7 @@ TEST(ShortestFile, HasAListInALine) {
   expect_same_machine(configuration);
 }
 
-TEST(ShortestFile, SaysWhatOtherFieldsWouldChange) {
+TEST(ShortestFile, ShowsWhatOtherFieldsWouldChange) {
   Configuration configuration;
   configuration.name = "held";
   configuration.chip.intersection_pool_size = 1024;  // which held_limit follows, unless it is said

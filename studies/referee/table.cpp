@@ -124,7 +124,7 @@ void set_times(Row& row, std::vector<float>& errors) {
   row.largest = at(1);
 }
 
-/// Makes the smallest cases of the rows of a contender smaller.
+/// Reduces the smallest cases of the rows of a contender further.
 class RowShrinker {
  public:
   RowShrinker(Contender& contender, Row* rows)

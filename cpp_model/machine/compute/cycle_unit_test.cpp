@@ -146,7 +146,7 @@ std::vector<uint64_t> written_back(const std::string& text, uint32_t lanes, bool
 }
 
 // docs/machine/architecture.md, section 3. The last is a `tid` behind it, which takes 4.
-TEST(CycleUnit, ATripleTakesTheCyclesThatArchitectureMdTells) {
+TEST(CycleUnit, ATripleTakesTheCyclesOfArchitectureMd) {
   using Cycles = std::vector<uint64_t>;
   EXPECT_EQ(written_back("ffma r1, r4, r7, r10", 4, false), (Cycles{6, 10}));
   EXPECT_EQ(written_back("ffma3 r1, r4, r7, r10", 4, true), (Cycles{6, 8, 10, 14}));

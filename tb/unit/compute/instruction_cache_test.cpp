@@ -202,7 +202,7 @@ TYPED_TEST(InstructionCacheTest, ReplacesTheLeastRecentlyUsedLine) {
 }
 
 // Two lines that differ in one upper bit, whichever it is, in both ways of their set and in either order.
-TYPED_TEST(InstructionCacheTest, TellsLinesApartByEveryBitOfTheirPc) {
+TYPED_TEST(InstructionCacheTest, DistinguishesLinesByEveryBitOfTheirPc) {
   for (uint32_t bit = lowest(8 * Bench<TypeParam>::kWayLines); bit < 16; ++bit) {
     for (const uint32_t before : {0u, 1u}) {  // other lines of the set, so that the pair goes into either way
       Bench<TypeParam> bench;

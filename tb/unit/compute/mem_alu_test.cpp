@@ -331,7 +331,7 @@ TYPED_TEST(MemAluOfThreeMisses, RegistersAreFreedWhileLosersWaitForAWayOfTheirSe
 }
 
 // Each bit of an address, in the bank that is accessed, in what waits for it and at the port.
-TYPED_TEST(MemAlu, TellsLinesApartByEveryBitOfTheirAddress) {
+TYPED_TEST(MemAlu, DistinguishesLinesByEveryBitOfTheirAddress) {
   for (uint32_t bit = lowest(this->kWay); bit < 32; ++bit) {
     for (const bool other_first : {false, true}) {  // so that the pair goes into either way
       typename TestFixture::Bench bench;

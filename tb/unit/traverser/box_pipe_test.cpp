@@ -249,7 +249,7 @@ TEST_P(Narrow, MeetsFewBoxesMore) {
 
 INSTANTIATE_TEST_SUITE_P(Bits, Narrow, testing::Range(kLeastBoxBits, kMostBoxBits + 1));
 
-TEST(BoxRay, WhatHitsNothingIsNoRay) {
+TEST(BoxRay, RaysThatHitNothingAreInvalid) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), tiny = std::numeric_limits<float>::denorm_min();
   const RayWords good = {{0, 0, 0}, {1, 0, 0}, kInfinity};
   EXPECT_TRUE(set_up(good, 8).valid);
