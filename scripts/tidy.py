@@ -111,7 +111,7 @@ def make_headers(build, commands, sources):
 
 
 def compiled_sources(commands, ours):
-    """[folder] = those of these sources that the build compiles, and [folder] = what the compiler is told there."""
+    """[folder] = those of these sources that the build compiles, and [folder] = the compiler's options there."""
     sources, flags = collections.defaultdict(dict), collections.defaultdict(dict)
     for entry in commands:
         path = pathlib.Path(entry["file"])

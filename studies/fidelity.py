@@ -386,7 +386,7 @@ def parser():
     options = Parser(prog="fidelity", description=__doc__.splitlines()[0], allow_abbrev=False)
     names = ",".join(level.name for level in LEVELS)
     options.add_argument("--levels", type=chosen_levels, default=names, help=f"default: {names}")
-    options.add_argument("--runs", type=positive, default=1, help="times that each level draws; medians are told")
+    options.add_argument("--runs", type=positive, default=1, help="times that each level draws; medians are printed")
     options.add_argument("--out", help="folder (default: build/fidelity/ and the frame's name)")
     for name in (*DEFAULTS, *OTHERS):
         default = DEFAULTS.get(name)

@@ -87,7 +87,7 @@ fs::path OutputFiles::begin(const fs::path& path, bool whole) {
   clear(place.file);
   fs::path temporary = place.file.parent_path() / temporary_name(place.file.filename());
   parts_.push_back({temporary, place.file, RemovedWhenStopped(temporary)});
-  // Made here, so that a folder that may not be written to is told before the work.
+  // Made here, so that a folder that may not be written to is reported before the work.
   const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   const int error = file < 0 ? errno : 0;
   if (error != 0) fail(path, error);

@@ -287,7 +287,7 @@ module rp_chip #(
                   store_trace_data, store_trace_mask, ray_trace_valid, ray_trace_warp, ray_trace_word, ray_trace_mask,
                   ray_trace_data};
 
-  // A launch has the block of the next tile, which eye rays need; kernels are told of no number of blocks.
+  // A launch has the block of the next tile, which eye rays need; kernels are given no number of blocks.
   rp_multiprocessor #(
     .UNITS(UNITS),
 `include "rp_unit_parameter_map.vh"

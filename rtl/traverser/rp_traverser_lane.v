@@ -10,7 +10,7 @@
 // step: a ray that has come to as many nodes as there are may come to none. Leaves need no count, as each is a child of
 // such a node.
 // Promises: what a ray hits is what triangle_pipe hits of all triangles in the tree, whatever comes in which order. No
-// output depends on an input of the same cycle, but what the triangle pipe is told.
+// output depends on an input of the same cycle, but what the triangle pipe is given.
 // Must be given: a ray once for a slot that was taken, and the slot back once after the ray was taken; what leaf_reader
 // must be of each cache; triangle_pipe's results.
 `default_nettype none
@@ -99,10 +99,10 @@ module rp_traverser_lane #(
   output wire [1:0]              test_main_axis_o,
   output wire [63:0]             test_shear_o,
   output wire [104:0]            test_direction_o,
-  input  wire [SLOT_BITS-1:0]    limit_slot_i,   // a cycle before it is told
+  input  wire [SLOT_BITS-1:0]    limit_slot_i,   // a cycle before it is given
   output wire [31:0]             limit_o,
   output wire [8:0]              scale_o,
-  input  wire [SLOT_BITS-1:0]    best_slot_i,    // a cycle before it is told
+  input  wire [SLOT_BITS-1:0]    best_slot_i,    // a cycle before it is given
   output wire [31:0]             best_t_o,
   output wire [31:0]             best_number_o,
   input  wire                    result_valid_i,

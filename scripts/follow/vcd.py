@@ -49,7 +49,7 @@ def number(digits):
 
 
 def followed(lines, names):
-    """Of a VCD's lines those of the signals in `names`, and of what a frame is told by."""
+    """Of a VCD's lines those of the signals in `names`, and of what marks a frame."""
     lines, names, codes = iter(lines), {*ALWAYS, *names}, set()
     for line, code, name in header(lines):
         if code is None:

@@ -255,7 +255,7 @@ if [ "$before" != "$(cd "$folder/out" && ls -A && cksum ./*)" ]; then
 fi
 
 sim=("$raypool" sim --engine functional --size 8x8 --out "$folder/out" --quiet)
-# What is drawn, but hardly as it was meant, is told.
+# What is drawn, but hardly as it was meant, is reported.
 warns() {
   local what=$1 pattern=$2; shift 2
   "$@" > "$folder/stdout" 2> "$folder/stderr" && [ "$(wc -l < "$folder/stderr")" = 1 ] &&

@@ -433,7 +433,7 @@ class Whole(SmallBlocks):
         self.assertEqual((rows[unit]["flip_flops"], rows[launches]["flip_flops"]), (2 * alone, 2 * alone))
         self.assertIn(made["timing"]["to_block"], ("frame_port", launches))
         self.assertGreater(rows["frame_port"]["flip_flops"], 0)
-        # The thesis' area is that of a unit; of the chip every block is told, however small.
+        # The thesis' area is that of a unit; of the chip every block is reported, however small.
         printed = report.table(made)
         self.assertNotIn("thesis", printed)
         self.assertTrue(printed.startswith("1w1c-chip-2cu "))

@@ -1,5 +1,5 @@
-// A scene as the command line names it: with camera and light from its words, and with
-// what cannot be drawn told on stderr.
+// A scene as the command line names it: with camera and light from its words, and with what cannot be drawn reported on
+// stderr.
 #pragma once
 
 #include <string>

@@ -91,9 +91,9 @@ class ProgramStatements : public ProgramEmitter {
   /// `st` or `ld` at r13 + offset; `of_four`: or ld3.
   void access(bool store, uint32_t offset, bool of_four = false);
   void memory();
-  /// Loads and stores at addresses up to the told limit, far beyond the program's data: in lines of the
-  /// warp's own, or in lines that no warp stores to. Addresses of the lanes, of the warps or of one access after the
-  /// other differ in one upper bit.
+  /// Loads and stores at addresses up to the given limit, far beyond the program's data: in lines of the warp's own, or
+  /// in lines that no warp stores to. Addresses of the lanes, of the warps or of one access after the other differ in
+  /// one upper bit.
   void far_memory();
   /// r13 = what far addresses have below their upper bits; `spread`: an upper bit from
   /// which on lanes or warps differ, or 32.

@@ -40,7 +40,7 @@ std::string result_files(const DecodedInstruction& instruction, const Configurat
     case AluType::Ray:
       return "rtl/compute/rp_ray_memory.v, rtl/compute/rp_ray_alu.v";
     case AluType::Tid:
-      // What it is told of the launch.
+      // What it is given of the launch.
       return "rtl/compute/rp_tid_alu.v, rtl/compute/rp_compute_unit.v";
     default:
       return rtl_files({std::string(alu_info(instruction.alu()).name) + "_alu"});

@@ -62,7 +62,7 @@ class Traversal {
   bool nearest(const RayQuery& ray, Hit& hit, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
   /// Any hit at all; visits fewer nodes than nearest().
   bool occluded(const RayQuery& ray, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
-  /// The same answers, the fast way; `visits` is told what is visited on it.
+  /// The same answers, the fast way; `visits` records what is visited on it.
   bool nearest(const RayQuery& ray, Hit& hit, WideVisits& visits) const;
   bool occluded(const RayQuery& ray, WideVisits& visits) const;
   /// The same answer as nearest(), from every triangle in turn. For tests.
@@ -70,7 +70,7 @@ class Traversal {
 
   const Bvh& bvh() const { return bvh_; }
   const WideBvh& wide_bvh() const { return wide_; }
-  /// What rays that visited this on the fast way, from so many places on, visit in bvh(), about: some nodes are told
+  /// What rays that visited this on the fast way, from so many places on, visit in bvh(), about: some nodes are listed
   /// several times, and here and there they come to some that they miss on the other way. They are appended.
   void places_of(const WideVisits& visits, size_t from, VisitList& places) const;
   /// Makes every box of bvh() what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
@@ -119,7 +119,7 @@ class Tracer {
   bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr,
              VisitList* visits = nullptr) const;
 
-  /// The same answer; `visits`, made of traversal().wide_bvh(), is told what is visited on the fast way to it.
+  /// The same answer; `visits`, made of traversal().wide_bvh(), records what is visited on the fast way to it.
   bool trace(const Ray& ray, Intersection& intersection, WideVisits& visits) const;
 
   /// Words 0 .. 11 are the ray's, the others zero.

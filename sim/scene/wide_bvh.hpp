@@ -98,7 +98,7 @@ class WideVisits {
 };
 
 /// The loop around box test and triangle test, for one set of the processor's instructions. `ray` is valid and the tree
-/// not empty; `visits`, if not null, is told. False: nothing is hit. All answers are the same whichever set it is.
+/// not empty; `visits`, if not null, records them. False: nothing is hit. All answers are the same whichever set it is.
 struct Walk {
   const char* instructions;  ///< "sse", "avx2"
   bool (*nearest)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits);

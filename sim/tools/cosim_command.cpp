@@ -133,7 +133,7 @@ std::string subject(const std::string& report) {
   return text;
 }
 
-/// Shrinks a program that fails, saves it, and throws what is to be told.
+/// Shrinks a program that fails, saves it, and throws what is to be reported.
 [[noreturn]] void report_failure(const Cosim& cosim, const CosimOptions& options, const RandomProgram& program,
                                  const std::string& report, const std::string& again, bool is_difference) {
   std::string text = report;

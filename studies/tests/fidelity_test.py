@@ -196,7 +196,7 @@ class Differences(Case):
 
 
 class Errors(unittest.TestCase):
-    """Of a level that is not exact, which has errors: they are those against the hardware, wherever they are told."""
+    """Of a level that is not exact, which has errors: they are those against the hardware, wherever they are shown."""
 
     def run_of(self, level, cycles, flt):
         run = fidelity.Run(level)

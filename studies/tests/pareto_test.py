@@ -152,7 +152,7 @@ class Runs(unittest.TestCase):
         self.assertLess(rows["24-fit"]["configuration"]["intersection_words"], 21)
         self.assertRegex(done.stdout, r"\n24 +\d\.\d{3}% +[1-9]\d* +\d+ +\d+\.\d\n")
         self.assertEqual(sorted(os.listdir(self.out)), ["machines", "pareto.json"])
-        # The picture is that of raypool sim, and so is what is told of it.
+        # The picture is that of raypool sim, and so is what is reported of it.
         subprocess.run([RAYPOOL, "sim", *FRAME, "--set", "arithmetic.significand=11", "--engine", "native", "--quiet",
                         "--out", self.folder / "sim"], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
         picture = (self.out / "machines/11.png").read_bytes()

@@ -6,8 +6,8 @@
 // beat is handed on: so it need not be called in the others. Within a cycle the memory comes first, taking what it is
 // offered, then the device, then the traverser, then the service; then beats are handed on.
 //
-// A memory that takes everything at once can be told so ahead of time: serve() and taken() may be called as soon as
-// there is a request, and the line's beats be given.
+// A memory that takes everything at once can be run ahead of time: serve() and taken() may be called as soon as there
+// is a request, and the line's beats be given.
 #pragma once
 
 #include <algorithm>

@@ -46,7 +46,7 @@ class InstructionCache {
   void forget_miss() { missed_ = false; }
 
   // Registers, as they stand in the present cycle.
-  bool missed() const { return missed_; }  ///< the latest lookup, and clock() has not been told yet
+  bool missed() const { return missed_; }  ///< the latest lookup, before clock() is given it
   bool refill_done() const { return done_; }
   uint32_t result_warp() const { return warp_; }  ///< of the latest lookup
   /// In the cycle after refill_done(): the warp that began the fetch with its miss, as a set. If it does not ask then,

@@ -55,7 +55,7 @@ class LaneHits {
   explicit LaneHits(const std::vector<LaneRay>& rays) : rays_(&rays), hits_(rays.size()) {}
 
   const Hit& best(uint32_t slot) const { return hits_[slot]; }
-  /// What a test of this ray is told, when in the same cycle this result is there, or none (null).
+  /// What a test of this ray is given, when in the same cycle this result is there, or none (null).
   TrianglePipe::Best told(uint32_t slot, const Result* result) const {
     if (result != nullptr && result->hit && result->tag.slot == slot) return {result->t, result->number};
     return hits_[slot].hit ? TrianglePipe::Best{hits_[slot].t, hits_[slot].number} : TrianglePipe::Best{INFINITY, 0};

@@ -209,7 +209,7 @@ class Traverser {
   }
 
  private:
-  /// A cache, its lines, and what it is asked and told in a cycle.
+  /// A cache, its lines, and its requests and answers in a cycle.
   struct Cache {
     explicit Cache(const TreeBanks::Sizes& sizes) : banks(sizes), lines(sizes.lines) {}
 

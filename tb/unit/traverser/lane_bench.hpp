@@ -226,7 +226,7 @@ class LaneBench {
     ++seen.cycles;
   }
 
-  // The triangle pipe's class and then the lane's: what a test is told takes the results of the same cycle into
+  // The triangle pipe's class and then the lane's: what a test is given takes the results of the same cycle into
   // account.
   void clock_pipe(TraverserLane::Inputs& inputs, const std::optional<LeafReader::Test>& test) {
     LaneHits::Result result;

@@ -105,7 +105,7 @@ struct Walk {
   std::vector<uint32_t> lines;  ///< of nodes, and of leaves with kLeafLine, in their order
   LaneHits::Hit hit;
   uint32_t deepest = 0;           ///< entries of the stack
-  std::vector<TreeFault> faults;  ///< one of them there must be, if there are any: lines are told without their base
+  std::vector<TreeFault> faults;  ///< one of them there must be, if there are any: lines are given without their base
 
   /// `entries`: of a slot's stack, that are not in the memory.
   Walk(const LaneTree& tree, const LaneRay& ray, const NarrowFloat& narrow, uint32_t entries = 16)
