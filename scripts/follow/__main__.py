@@ -133,7 +133,7 @@ class Frame:
         try:
             return json.loads((self.folder / name).read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
-            raise FollowError(f"{self.folder / name}: this is no report of raypool sim ({error})") from error
+            raise FollowError(f"{self.folder / name}: this is not a report of raypool sim ({error})") from error
 
     def waveform(self):
         if not self.options.run:

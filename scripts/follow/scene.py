@@ -98,7 +98,7 @@ class Tree:
 
     def __init__(self, data):
         if data[:8] != b"rayp-bvh" or struct.unpack_from("<I", data, 8) != (1,):
-            raise FollowError("what raypool scene --write-bvh wrote is no tree of version 1")
+            raise FollowError("what raypool scene --write-bvh wrote is not a tree of version 1")
         nodes, triangles, node_place, triangle_place = struct.unpack_from("<IIQQ", data, 40)
         self.nodes = [self.node(data, node_place + 64 * number) for number in range(nodes)]
         self.triangles = [self.triangle(data, triangle_place + 44 * place) for place in range(triangles)]

@@ -290,7 +290,7 @@ class Refusals(Case):
         self.refused("--ray shadow7: this pixel has eye", "--ray", "shadow7", *SMALL, "--out", str(self.folder))
 
     def test_folders(self):
-        self.refused("report.json: this is no report", "--from", str(self.folder))
+        self.refused("report.json: this is not a report", "--from", str(self.folder))
         (self.folder / "report.json").write_text('{"size": {"width": 8, "height": 6}}')
         self.refused("there is neither waves.fst nor waves.vcd", "--from", str(self.folder), *SMALL)
         (self.folder / "waves.fst").write_text("no waveform")
