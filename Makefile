@@ -41,7 +41,7 @@ export CUS ?= 1
 #:   WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep
 #:   TRACE=FROM:CYCLES|pixel:X,Y   what happens then, for Perfetto, Konata and make report;
 #:                                 1: 0:20000; ENGINE=model
-#:   HITS=own|embree               ENGINE=native: whose hits                   own
+#:   HITS=own|embree               ENGINE=native: the hits to draw with        own
 #:   THREADS=N                     ENGINE=native, sampled                      all cores
 #:   ERROR=N%  or  TIME=Ns         ENGINE=sampled: what may be afforded        ERROR=2%
 #:   SEED=N                        of what is random: ENGINE=sampled, cosim ...
@@ -74,12 +74,12 @@ endif
 RAYPOOL := $(BUILD)/raypool
 # One at a time in a folder: a second make waits here.
 LOCKED := flock $(BUILD)/.lock
-# Benches whose runs of hours are worth an optimised build.
+# Benches with runs of hours, which are worth an optimised build.
 OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/benches ON \
   -DRAYPOOL_BENCHES_OPTIMISED=ON
 # Where nothing is built yet, make sim compiles only what draws. The engine sampled is a study's.
 DRAWS := $(if $(or $(wildcard $(RAYPOOL)),$(filter sampled,$(ENGINE))),raypool,raypool-sim)
-# built PROGRAM,WORDS: builds it, and says so where it is not there yet.
+# built PROGRAM,WORDS: builds it, and prints WORDS where it is not there yet.
 built = @[ -x $(BUILD)/$1 ] || echo 'building $2'; scripts/build.sh $(BUILD) $1
 # options NAMES: of each variable that is set the option, --look-at for LOOK_AT, --units for CUS. A value stays one
 # word, and behind the equals sign it may begin with a minus.
@@ -159,7 +159,7 @@ run: setup-sim program ## run a compute kernel, check its results, print its cyc
 #:   PROGRAMS=N                    of all; make configurations: of each machine
 export PROGRAMS ?= 1000
 #:   COVERAGE=FILE.json            what was covered
-# One machine where the call says which; else those of configs/cosim/, which share the programs. What an outer make has
+# One machine where the call names it; else those of configs/cosim/, which share the programs. What an outer make has
 # exported is no call.
 ONE_MACHINE := $(filter command $(if $(filter 0,$(MAKELEVEL)),environment),\
   $(foreach name,CONFIG CUS SET,$(firstword $(origin $(name)))))
@@ -185,7 +185,7 @@ traverser-trees: setup-sim setup-test ## random trees, and garbage, in the trave
 	@scripts/build.sh $(BUILD)/benches traverser_test traverser_large_test
 	@for bench in traverser_test traverser_large_test; do \
 	  RAYPOOL_TREES="$$TREES" RAYPOOL_SEED="$$SEED" \
-	    $(BUILD)/benches/tb/$$bench --gtest_filter='*OfChance*' --gtest_brief=1 $(ARGS); \
+	    $(BUILD)/benches/tb/$$bench --gtest_filter='*.Random*' --gtest_brief=1 $(ARGS); \
 	done
 
 #: variables of make faults
@@ -202,7 +202,7 @@ faults: setup-sim setup-test configured-ON program ## faults in the Verilog: wha
 	  $(call options,$(call said,CONFIG))
 	@$(BUILD)/raypool_faults $(SOURCE) $(BUILD)/faults $(call options,MACHINES $(call said,FRAMES)) $(ARGS)
 
-# Its frame is small, whatever the defaults of make sim are: only what the command line says of it counts.
+# Its frame is small, whatever the defaults of make sim are: only what is set on the command line counts.
 #: variables of make follow: those of the frame; without them SCENE is examples/tour.obj with its view, CONFIG 4w4c,
 #:     SIZE 32x24, DEPTH 2
 #:   PIXEL=X,Y                     from 0, y downwards                         20,10
@@ -263,7 +263,7 @@ test: setup-sim setup-test setup-synth configured-ON ## what guards a change
 #: variable of make test-long:  SHARE=1..10: only this tenth of the tests
 test-long: setup-sim setup-test setup-synth setup-lint configured-ON ## the other tests; SHARE=1..10: a tenth
 	@[[ "$(SHARE)" =~ ^([1-9]|10)?$$ ]] || \
-	  { echo 'make test-long: SHARE is "$(SHARE)": say 1 to 10, or nothing' >&2; exit 1; }
+	  { echo 'make test-long: SHARE is "$(SHARE)": give 1 to 10, or nothing' >&2; exit 1; }
 	@scripts/build.sh $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" \
 	  -L '^long-$(or $(SHARE),.*)$$' --no-tests=error
@@ -289,7 +289,7 @@ proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)
 lint: setup-sim setup-lint configured-ON ## Verilog in three tools, C++ layout and checks, scripts
 	@scripts/lint.sh
 
-format: setup-lint ## lay out the C++ files as .clang-format says
+format: setup-lint ## lay out the C++ files by .clang-format
 	@scripts/sources.sh cpp | xargs clang-format -i
 
 bench: setup-sim configured-OFF ## measured rates of the engines on this machine

@@ -14,7 +14,7 @@
 namespace raypool::bench {
 
 struct PortRecording {
-  /// Some cycles with the same readies; launch, response and beat belong to the first.
+  /// Some cycles with the same readies; launch, response and beat are of the first.
   struct Span {
     uint32_t cycles;
     uint8_t readies;  ///< memory request, import request, export, frame: bits 0 .. 3
@@ -31,7 +31,7 @@ struct PortRecording {
   uint64_t cycles = 0;
 };
 
-/// `device`, whose inputs are written to `recording`; `memory` is the host's. Both must outlive it.
+/// `device`, with its inputs written to `recording`; `memory` is the host's. Both must outlive it.
 std::unique_ptr<ComputeUnit> record_ports(std::unique_ptr<ComputeUnit> device, const Memory& memory,
                                           PortRecording& recording);
 

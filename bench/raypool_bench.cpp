@@ -64,10 +64,10 @@ Json draw(const BenchOptions& bench, const char* config, const char* engine) {
 void print_row(const char* config, const char* engine, const Json& report) {
   const double seconds = report["simulation_seconds"];
   const double rays = report["rays"];
-  fmt::print("{:<7} {:<11} {:>9.3f} {:>16.1f}", config, engine, seconds, rays / seconds / 1e3);
+  fmt::print("{:<7} {:<11} {:>9.3f} {:>9.1f}", config, engine, seconds, rays / seconds / 1e3);
   const double thread_instructions = report.value("thread_instructions", 0.0) / seconds;
   const double cycles = report["cycles"].is_null() ? 0 : report["cycles"].get<double>() / seconds;
-  cycles > 0 ? fmt::print(" {:>18.1f}", cycles / 1e3) : fmt::print(" {:>18}", "-");
+  cycles > 0 ? fmt::print(" {:>10.1f}", cycles / 1e3) : fmt::print(" {:>10}", "-");
   thread_instructions > 0 ? fmt::print(" {:>30.1f}\n", thread_instructions / 1e3) : fmt::print(" {:>30}\n", "-");
   std::fflush(stdout);
 }
@@ -105,7 +105,7 @@ void compare_units(const BenchOptions& bench, const std::string& config) {
     return place == bench.engines.end() ? 0.0 : best[place - bench.engines.begin()];
   };
   for (size_t engine = 0; engine < bench.engines.size(); ++engine)
-    fmt::print("{:<7} {:<11} {:>9.3f} {:>16} {:>18.1f} {:>30.1f}\n", config, bench.engines[engine], best[engine], "-",
+    fmt::print("{:<7} {:<11} {:>9.3f} {:>9} {:>10.1f} {:>30.1f}\n", config, bench.engines[engine], best[engine], "-",
                cycles / best[engine] / 1e3, threads / best[engine] / 1e3);
   if (at("rtl") > 0 && at("model") > 0)
     fmt::print(
@@ -118,7 +118,7 @@ void compare_units(const BenchOptions& bench, const std::string& config) {
 void compare_engines(const BenchOptions& bench) {
   fmt::print("cornell, 128x128, depth 5, the whole chip; best of {}. native uses every core, the others one.\n",
              bench.repetitions);
-  fmt::print("config  engine        seconds  thousand rays/s  thousand cycles/s  thousand thread instructions/s\n");
+  fmt::print("config  engine        seconds   krays/s  kcycles/s  thousand thread instructions/s\n");
   Json small;
   for (const char* config : {"4w4c", "8w8c"}) {
     for (const char* engine : {"rtl", "lockstep", "model", "functional", "native"}) {
@@ -129,7 +129,7 @@ void compare_engines(const BenchOptions& bench) {
   }
   const double cycles = small["cycles"];
   const double thread_instructions = small["thread_instructions"];
-  fmt::print("best open GPU RTL, 4 warps x 4 lanes: {:.0f} thousand cycles/s, {:.0f} thousand thread instructions/s\n",
+  fmt::print("best open GPU RTL, 4 warps x 4 lanes: {:.0f} kcycles/s, {:.0f} thousand thread instructions/s\n",
              kReferenceCycles / 1e3, kReferenceThreadInstructions / 1e3);
   fmt::print("raypool 4w4c rtl against it: {:.1f} times the cycles, {:.1f} times the thread instructions\n\n",
              cycles / kReferenceCycles, thread_instructions / kReferenceThreadInstructions);

@@ -1,4 +1,4 @@
-# raypool_layer(FOLDER USED...): adds the folder, whose targets may use those of these folders and its own.
+# raypool_layer(FOLDER USED...): adds the folder; its targets may use those of these folders and its own.
 function(raypool_layer folder)
   add_subdirectory(${folder})
   set_property(GLOBAL APPEND PROPERTY RAYPOOL_LAYERS ${folder})

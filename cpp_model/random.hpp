@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Random numbers of tests, random programs and samples: std::mt19937, whose numbers are words here and need no cast.
+// Random numbers of tests, random programs and samples: std::mt19937 with numbers that are words and need no cast.
 #pragma once
 
 #include <cstdint>

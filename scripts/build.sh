@@ -1,5 +1,5 @@
 #!/bin/bash
-# Builds targets and says how far it is: scripts/build.sh BUILD [TARGET]... (default: all). On a terminal one line that
+# Builds targets and shows the progress: scripts/build.sh BUILD [TARGET]... (default: all). On a terminal one line that
 # is rewritten, elsewhere one every ten seconds, on standard error. A second one in the same folder waits.
 set -eu -o pipefail
 build=$1

@@ -16,8 +16,8 @@ made_elsewhere() {
   done
 }
 
-# Takes CMake's part out of such a folder and says so; results and Verilated units, which hold no such paths, stay. The
-# project's options in it, as words for CMake, are then in the array `kept`: leave_place BUILD
+# Takes CMake's part out of such a folder and reports it; results and Verilated units, which hold no such paths, stay.
+# The project's options in it, as words for CMake, are then in the array `kept`: leave_place BUILD
 leave_place() {
   local was name
   was=$(made_elsewhere "$1")

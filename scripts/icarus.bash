@@ -1,6 +1,6 @@
 # For scripts that replay a recording in Icarus; sourced in the project's folder.
 
-# need_icarus: says what is missing.
+# need_icarus: names what is missing.
 need_icarus() {
   local tool
   for tool in iverilog vvp; do
@@ -28,7 +28,7 @@ replay() {
   local result
   result=$(vvp -n "$2/$1.vvp" +vectors="$2/vectors.txt")
   echo "$3: $result"
-  # A bench that stops early says nothing.
+  # A bench that stops early prints nothing.
   grep -q 'as recorded' <<< "$result" ||
     { echo "$(basename "$0"): FAILED; the recording is $2/vectors.txt" >&2; exit 1; }
 }

@@ -1,9 +1,9 @@
 #!/bin/bash
 # Icarus as second opinion on the whole chip: scripts/icarus_chip.sh CHIP_FRAMES FOLDER MACHINE FRAME... records random
-# frames of a tiny chip as its model draws them (CHIP_FRAMES is raypool_chip_frames, whose machines and frames have
-# these numbers) and replays each on rtl/chip/rp_chip.v in Icarus, where registers and memories begin as X and so does
-# what the chip is given while nothing says that it is valid. RTL names another folder with the Verilog. Fails if an
-# output differs from the recording in any cycle, or is X where it counts.
+# frames of a tiny chip as its model draws them (CHIP_FRAMES is raypool_chip_frames, which numbers machines and frames)
+# and replays each on rtl/chip/rp_chip.v in Icarus, where registers and memories begin as X and so does what the chip is
+# given while it is not valid. RTL names another folder with the Verilog. Fails if an output differs from the recording
+# in any cycle, or is X where it counts.
 set -eu -o pipefail
 [ $# -ge 4 ] || { echo "usage: scripts/icarus_chip.sh CHIP_FRAMES FOLDER MACHINE FRAME..." >&2; exit 1; }
 chip_frames=$(realpath "$1") folder=$2 machine=$3

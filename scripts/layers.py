@@ -24,7 +24,7 @@ IMPORT = re.compile(r"^\s*(?:from|import)\s+([\w.]+)", re.M)
 
 
 def includes(root):
-    """(file, what it includes) of the project, as paths below its root. Generated headers are nobody's."""
+    """(file, what it includes) of the project, as paths below its root. Generated headers are in no layer."""
     for layer in MAY_USE:
         for path in sorted((root / layer).rglob("*.[ch]pp")):
             for name in INCLUDE.findall(path.read_text()):

@@ -201,7 +201,7 @@ wait
 [ $# -gt 0 ] || keep_duration lint
 # The last lines are the ones that are read.
 if [ -s "$failed" ]; then
-  printf 'lint: %d of %d checks are not clean; what they say stands above:\n' "$(wc -l < "$failed")" "$checks"
+  printf 'lint: %d of %d checks are not clean; their output stands above:\n' "$(wc -l < "$failed")" "$checks"
   sort "$failed" | sed 's/^/  /'
   exit 1
 fi

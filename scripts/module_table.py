@@ -4,7 +4,8 @@ missing or untrue.
 
 Each module of rtl/ has one row: module, without its prefix, Verilog file, C++, tests, proofs. What the C++ column names
 is defined in a file that it names, and a class that is called like the module is among them. A test builds a module
-that holds the module, and a bench of the module's own is named. The proofs are those whose checkers read the module.
+that holds the module, and a bench of the module's own is named. The proofs are those with checkers that read the
+module.
 """
 import pathlib
 import re

@@ -5,7 +5,7 @@
 
 In a page an indented block is a command and its output: lines "$ COMMAND", each followed by what it prints. Everything
 else stands in a fence. A line "..." stands for any lines. Seconds and minutes are not compared. A comment above a block
-says what else is special:
+marks what else is special:
 
     <!-- quoted: long -->        takes more than half a minute: run with --long only
     <!-- quoted: measured -->    its figures are rates of a machine: only the words between them are compared

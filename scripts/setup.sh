@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs the Debian packages of the named groups of scripts/packages.txt that are not there yet:
 # scripts/setup.sh sim test
-# Says nothing and takes milliseconds when nothing is missing. Needs root, or sudo; else prints the line to run and
+# Prints nothing and takes milliseconds when nothing is missing. Needs root, or sudo; else prints the line to run and
 # ends with 1.
 set -eu -o pipefail
 cd "$(dirname "$0")/.."

@@ -111,7 +111,7 @@ def make_headers(build, commands, sources):
 
 
 def compiled_sources(commands, ours):
-    """[folder] = those of these sources that the build compiles, and [folder] = what the compiler is told there."""
+    """[folder] = those of these sources that the build compiles, and [folder] = the compiler's options there."""
     sources, flags = collections.defaultdict(dict), collections.defaultdict(dict)
     for entry in commands:
         path = pathlib.Path(entry["file"])
@@ -185,7 +185,7 @@ def pieces(folder, sources, flags, scratch):
 
 
 def tidy(piece, flags):
-    """What clang-tidy says of a piece, and whether it is content."""
+    """What clang-tidy reports of a piece, and whether it is content."""
     run = subprocess.run(["clang-tidy", "--quiet", f"--config-file={ROOT / '.clang-tidy'}", piece.file, "--", *flags],
                          capture_output=True, text=True)
     text = "\n".join(line for line in (run.stdout + run.stderr).splitlines() if not NOISE.match(line))

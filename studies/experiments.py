@@ -225,7 +225,7 @@ def main(words):
     elif len(words) == 3 and words[0] in PLOTS:
         PLOTS[words[0]](load(words[1]), words[2])
     else:
-        raise ExperimentsError(f"say {'|'.join(TABLES)} TABLE.json, or {'|'.join(PLOTS)} TABLE.json PICTURE.png")
+        raise ExperimentsError(f"give {'|'.join(TABLES)} TABLE.json, or {'|'.join(PLOTS)} TABLE.json PICTURE.png")
 
 
 if __name__ == "__main__":

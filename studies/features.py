@@ -32,7 +32,7 @@ def load(path):
 
 
 def change(row, other, fields):
-    """What `row` has that `other` has not: 'triples=false'. What two parts have alike is told once, without them."""
+    """What `row` has that `other` has not: 'triples=false'. What two parts have alike is shown once, without them."""
     new = [(field, json.dumps(row[field]).strip('"')) for field in fields if row[field] != other[field]]
     ends = [f"{field.split('.')[-1]}={value}" for field, value in new]
     words = [end if ends.count(end) > 1 else f"{field.removeprefix('chip.')}={value}"
@@ -125,7 +125,7 @@ def main(words):
     elif len(words) == 3 and words[0] == "way":
         plot_way(words[1], words[2])
     else:
-        raise ExperimentsError("say alone TABLE.json, area TABLE.json, or way TABLE.json [PICTURE.png]")
+        raise ExperimentsError("give alone TABLE.json, area TABLE.json, or way TABLE.json [PICTURE.png]")
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ LEVELS = (
     Level("rtl", ("--engine", "rtl"), exact=True, verilated=True),
 )
 HARDWARE = LEVELS[-1].name
-# What reports of one frame may have of their own: who drew it, and how fast.
+# What reports of one frame may have of their own: which engine drew it, and how fast.
 OF_THE_RUN = ("command", "engine", "boundary", "hits", "wall_seconds", "simulation_seconds", "simulated_per_second")
 # Options of raypool sim that are passed on; those with a default name the folder.
 DEFAULTS = {"scene": "room", "config": "8w8c", "units": "1", "size": "200x200", "depth": "3"}
@@ -281,7 +281,7 @@ def print_tables(found):
     repeated = len(found["levels"][0]["wall_seconds"]["runs"])
     print(title(found) + (f"; medians of {repeated} runs" if repeated > 1 else ""))
     header = ["level", "   wall s", *(["  spread"] if repeated > 1 else []), "drawing s",
-              f"speed-up over {found['speed_up_over']}", "thousand rays/s", "thousand cycles/s", "cycles", "error",
+              f"speed-up over {found['speed_up_over']}", "krays/s", "kcycles/s", "cycles", "error",
               "Mrays/s", "picture"]  # fmt: skip
     speeds, uses = [header], []
     for row in found["levels"]:
@@ -386,7 +386,7 @@ def parser():
     options = Parser(prog="fidelity", description=__doc__.splitlines()[0], allow_abbrev=False)
     names = ",".join(level.name for level in LEVELS)
     options.add_argument("--levels", type=chosen_levels, default=names, help=f"default: {names}")
-    options.add_argument("--runs", type=positive, default=1, help="times that each level draws; medians are told")
+    options.add_argument("--runs", type=positive, default=1, help="times that each level draws; medians are printed")
     options.add_argument("--out", help="folder (default: build/fidelity/ and the frame's name)")
     for name in (*DEFAULTS, *OTHERS):
         default = DEFAULTS.get(name)

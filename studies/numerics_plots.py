@@ -49,7 +49,7 @@ def plot_quality(found, png):
     rows = {(row["scene"], row["mode"]): row["psnr_same_paths_db"] for row in found["quality"]}
     plot.bars(modes, [(scene, tone, [rows[scene, mode] or EQUAL for mode in modes])
                       for scene, (tone, _) in zip(scenes, series(len(scenes)))])  # fmt: skip
-    plot.title("Error of the colours alone: pixels whose rays all hit what they should")
+    plot.title("Error of the colours alone: pixels with all rays hitting what they should")
     plot.axes.axhline(ROUNDING, color=colour("flt"), linestyle="--", label="8-bit rounding")
     plot.axes.set_ylabel("PSNR before quantisation, dB (more is better)")
     legend(plot.axes, loc="lower center", bbox_to_anchor=(0.5, 1), ncol=4)

@@ -35,7 +35,7 @@ MACHINES = (
     "16-flush-newton1 16-flush-newton0 14-flush-newton1 13 13-flush-newton1 12-flush-newton1 11 11-flush-newton0 "
     "24-fit smallest-fit"
 ).split()
-# The fit of the smallest machine whose picture passes, whichever that turns out to be.
+# The fit of the smallest machine with a picture that passes, whichever that turns out to be.
 SMALLEST_FIT = "smallest-fit"
 SUBNORMALS, SLOW_UNIT = "subnormals", "slow_unit"
 # What all pictures are held against, and its folder.
@@ -56,7 +56,7 @@ class Row:
     def __init__(self, machine):
         self.machine = machine
         self.report = None
-        self.picture = self.criterion = None  # against the reference; what makes it pass, as raypool compare says it
+        self.picture = self.criterion = None  # against the reference; what makes it pass, as raypool compare prints it
         self.area = None
 
     @property
@@ -148,7 +148,7 @@ def draw_reference(options, folder):
 
 
 def draw(row, options, folder):
-    """The frame by the machine's own code, so that what it must not meet, a subnormal number say, is noticed."""
+    """The frame by the machine's own code, so that what it must not meet, such as a subnormal number, is detected."""
     name, fields = row.machine.name, [f"--set={field}" for field in row.machine.fields]
     out = folder / "drawn" / name
     if row.machine.fitted:

@@ -16,7 +16,7 @@ fidelity: setup-sim setup-fidelity program ## a frame at every level of simulati
 	@$(PYTHON) studies/fidelity.py $(call options,$(FRAME) LEVELS RUNS OUT) $(ARGS)
 
 #: of make intervals:  ARGS="--samples 50 --traverser hardware": seeds of each frame, 200 if not given; else static
-intervals: setup-sim program ## do the intervals of ENGINE=sampled contain the true values as often as they say?
+intervals: setup-sim program ## do the intervals of ENGINE=sampled have the coverage that they claim?
 	@python3 studies/intervals.py $(call options,OUT) $(ARGS)
 
 #: variables of make pareto: those of the frame
@@ -43,7 +43,7 @@ fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configura
 #:   SCENES=FOLDER:FOLDER          where scenes are that are not part of the project
 #:   OUT=FOLDER
 sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/use/sweeps.md)
-	@[ -n "$${EXPERIMENT-}" ] || { echo 'make sweep: say which, EXPERIMENT=configs/experiments/caches.json' >&2; exit 1; }
+	@[ -n "$${EXPERIMENT-}" ] || { echo 'make sweep: name one, EXPERIMENT=configs/experiments/caches.json' >&2; exit 1; }
 	@$(SWEEP) "$$EXPERIMENT" $(call options,WHERE OUT JOBS) $(ARGS)
 
 #: variables of make report

@@ -1,5 +1,5 @@
 # Random programs, regressions, configurations and the second simulator, as tests.
-# docs/develop/verification.md tells what each is for.
+# docs/develop/verification.md describes what each is for.
 set(raypool_program $<TARGET_FILE:raypool>)
 set(scripts ${CMAKE_SOURCE_DIR}/scripts)
 set(small_config ${CMAKE_SOURCE_DIR}/tb/mutants/2w2c.json)
@@ -21,23 +21,22 @@ raypool_long(50 cosim_machines_more)
 add_test(NAME cosim_command COMMAND ${scripts}/tests/cosim.sh ${raypool_program} ${CMAKE_BINARY_DIR}/cosim-test)
 set_tests_properties(cosim_command PROPERTIES FIXTURES_REQUIRED units_of_cosim TIMEOUT 300)
 
-# The catalogue of designers' mistakes fits the Verilog, and a few of them are
-# noticed soon; `make faults` runs them all.
+# The catalogue of seeded faults fits the Verilog, and a few of them are detected soon; `make faults` runs them all.
 add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults>
   ${CMAKE_BINARY_DIR}/faults-test)
 set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900 FIXTURES_SETUP faulty_2w2c)
-# So are small faults of single blocks put where they belong; `make faults SOURCE=blocks` runs them.
+# So do generated faults of single blocks; `make faults SOURCE=blocks` runs them.
 add_test(NAME block_mutants COMMAND ${scripts}/tests/block_mutants_test.py)
 set_tests_properties(block_mutants PROPERTIES TIMEOUT 300)
 raypool_long(12 block_mutants)
-# Whoever meets a difference runs again with a look inside the RTL: of its mistakes.
+# A run that meets a difference is repeated with a look inside the RTL: on seeded faults.
 add_test(NAME inspected_differences COMMAND ${scripts}/tests/inspect.sh ${raypool_program}
   ${CMAKE_BINARY_DIR}/faults-test)
 set_tests_properties(inspected_differences PROPERTIES FIXTURES_REQUIRED faulty_2w2c TIMEOUT 300)
 
 # docs/machine/modules.md names every module of rtl/, and no page names what is not there.
 add_test(NAME module_table COMMAND ${scripts}/module_table.py)
-# docs/develop/coverage.md says of each counter of rtl/ in which test it wraps.
+# docs/develop/coverage.md lists for each counter of rtl/ the test in which it wraps.
 add_test(NAME counter_table COMMAND ${scripts}/counter_table.py)
 add_test(NAME pages COMMAND ${scripts}/pages.py)
 # Neither the machine nor what verifies it uses a study of it; CMakeLists.txt checks the same of targets.
@@ -111,7 +110,7 @@ if(IVERILOG)
   add_test(NAME diagrams COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${scripts} python3 -m diagrams ${raypool_program}
     ${CMAKE_BINARY_DIR}/diagrams --check)
   set_tests_properties(diagrams PROPERTIES TIMEOUT 60)
-  raypool_built_test(icarus_notices_x 100 raypool_chip_frames ${scripts}/tests/icarus_notices.sh ${raypool_program}
-    ${chip_frames} ${CMAKE_BINARY_DIR}/icarus/notices)
-  set_tests_properties(icarus_notices_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small)
+  raypool_built_test(icarus_detects_x 100 raypool_chip_frames ${scripts}/tests/icarus_detects.sh ${raypool_program}
+    ${chip_frames} ${CMAKE_BINARY_DIR}/icarus/detects)
+  set_tests_properties(icarus_detects_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small)
 endif()

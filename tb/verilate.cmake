@@ -59,7 +59,7 @@ endfunction()
 
 # raypool_block_models(BENCH MODULE PARAMETERS MODEL...): class V<module>_<model>, a model being the parameters' values
 # with _ between; a module of rtl/, or of tb/unit/. With SYNTHESIS, as for the benches of the arithmetic:
-# the multiplier that hardware has. That is what `raypool_multiplier` says; without, the simulator multiplies.
+# the multiplier that hardware has. That is `raypool_multiplier`; without, the simulator multiplies.
 set(raypool_multiplier -DSYNTHESIS)
 function(raypool_block_models bench module names)
   rtl_file(source ${module})

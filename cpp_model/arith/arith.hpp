@@ -59,13 +59,13 @@ inline uint32_t canonical(float value) {
 }
 /// Integers in the order of the numbers, -0 before +0. Not for NaNs.
 inline int32_t order(uint32_t a) { return static_cast<int32_t>(a & kSign ? a ^ kMagnitude : a); }
-/// The `flush` result for the correctly rounded `rounded` of the same sign; `exact` tells on which
-/// side of kTinyLimit the true value is.
+/// The `flush` result for the correctly rounded `rounded` of the same sign; `exact` is the true value, or one on the
+/// same side of kTinyLimit.
 inline uint32_t flush_tiny(uint32_t rounded, double exact) {
   if ((rounded & kMagnitude) == kSmallestNormal && std::fabs(exact) < kTinyLimit) return rounded & kSign;
   return flushed(rounded);
 }
-/// The same for x * y + z, whose exact value a double may not hold.
+/// The same for x * y + z: a double may not hold its exact value.
 inline uint32_t flush_tiny_sum(uint32_t rounded, float x, float y, float z) {
   if ((rounded & kMagnitude) != kSmallestNormal) return flushed(rounded);
   // Knuth's two-sum: product + z = sum + rest exactly.

@@ -1,4 +1,4 @@
-// The model of arithmetic against the host's SSE unit, whose MXCSR register is set to the mode under test, and against
+// The model of arithmetic against the host's SSE unit, with its MXCSR register set to the mode under test, and against
 // MPFR (test_oracle.hpp), and its rules one by one.
 #include "arith/arith.hpp"
 

@@ -1,6 +1,6 @@
 // The Newton units as docs/machine/float-units.md defines them, in fractions: the oracle of their bits. Shares nothing
-// with the model, whose integers it judges, nor with the RTL's seed table: seeds are found by comparing squares,
-// numbers are taken apart by frexp and put together by ldexp.
+// with the model that it checks, nor with the RTL's seed table: seeds are found by comparing squares, numbers are taken
+// apart by frexp and put together by ldexp.
 #pragma once
 
 #include <algorithm>

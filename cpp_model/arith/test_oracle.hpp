@@ -122,7 +122,7 @@ inline uint32_t canonical_bits(__m128 value) {
   const uint32_t held = bits;
   return not_a_number(held) ? 0x7fc00000u : held;
 }
-/// Of a compare, whose result is all ones or all zeros.
+/// Of a compare: its result is all ones or all zeros.
 inline uint32_t truth(__m128 mask) {
   volatile int bits = _mm_cvtsi128_si32(_mm_castps_si128(mask));
   return bits != 0 ? 1 : 0;
@@ -140,7 +140,7 @@ __attribute__((noinline)) void each(const OperandBlock& in, std::vector<uint32_t
 
 /// frsqrt in integers. x = v * 2^(2k) with v in 1 .. 4, and r/2^24 in 1/2 .. 1 is the rounded 1/sqrt(v) exactly if
 /// (2r-1)^2 * v is below 2^50 and (2r+1)^2 * v above; an odd number above 1 divides no power of two, so there are no
-/// ties. A double only says where to begin.
+/// ties. A double only gives the first guess.
 inline uint32_t inverse_root(uint32_t x, bool flush) {
   const uint32_t sign = x & 0x80000000u, field = x >> 23 & 0xff;
   uint64_t mantissa = x & 0x007fffffu;

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kChip = "chip";  // the object of a file
 
-constexpr uint32_t kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
+constexpr uint32_t kLeastFusedDepth = 5;  // of flt: additions and multiplications go through the fused unit
 constexpr EnumArray<SlowUnit, uint32_t, 4> kLeastSlowDepths = {11, 11, 8, 6};  // of slw: Newton steps have stages
 
 /// Of a parameter a negative value is here what it was in the file.
@@ -36,7 +36,7 @@ void check_range(const std::string& where, const std::string& key, int value, co
     throw InputError(fmt::format("{}: {} is {}; it must be {}", where, key, value, text_of(range)));
 }
 
-/// One JSON object of a file: hands out its values and refuses keys that nobody asked for.
+/// One JSON object of a file: hands out its values and refuses keys that are never asked for.
 class Section {
  public:
   Section(const Json& json, std::string where, std::string prefix)
@@ -217,7 +217,7 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
 /// What a configuration is made of.
 struct Source {
   Json json;
-  std::string where, name;  ///< of which messages speak; which it has unless it says another
+  std::string where, name;  ///< that messages show; its name unless it gives another
 };
 
 Configuration made_of(const Source& source) { return from_json(source.json, source.where, source.name); }

@@ -35,7 +35,7 @@ struct ChipConfiguration {
 #undef RAYPOOL_PART
 };
 
-/// One instance of each type, a task each cycle, as deep as the type's table row says.
+/// One instance of each type, a task each cycle, as deep as in the type's table row.
 inline constexpr EnumArray<AluType, AluConfiguration, kAluTypes> default_alus() {
   EnumArray<AluType, AluConfiguration, kAluTypes> alus{};
   for (const AluType type : kEveryAluType) alus[type].depth = kAluTable[type].depth;
@@ -91,7 +91,7 @@ struct Configuration {
   const AluConfiguration& alu(AluType type) const { return alus[type]; }
   /// Groups of lanes that a task of slw is executed in, a cycle behind each other: 1 .. 32.
   uint32_t slow_groups() const { return slow_lanes < lanes ? lanes / slow_lanes : 1; }
-  /// What alu() says of a group of lanes, for a whole task.
+  /// What alu() gives for a group of lanes, for a whole task.
   AluConfiguration task_of(AluType type) const {
     AluConfiguration task = alus[type];
     if (type != AluType::Slw) return task;
@@ -104,11 +104,11 @@ struct Configuration {
 /// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form
 /// NwMc that has no file gets the defaults with N warps and M lanes. Throws InputError naming file, key, value and
 /// allowed range; unknown keys are refused.
-/// `set`: fields to change, "data_cache.bytes=4096" (config/settings.hpp); the configuration's name then tells them,
+/// `set`: fields to change, "data_cache.bytes=4096" (config/settings.hpp); the configuration's name then shows them,
 /// unless they set it.
 Configuration load_configuration(const std::string& name_or_path, const std::vector<std::string>& set = {});
 
-/// Whether its name alone says what it is: a file of the project, or NwMc.
+/// Whether its name alone defines it: a file of the project, or NwMc.
 bool is_built_in(const Configuration& configuration);
 
 /// A configuration from the text of a configuration file; `where` names the source in messages.

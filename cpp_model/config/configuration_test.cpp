@@ -383,7 +383,7 @@ TEST(Configuration, BrokenJsonIsReportedWithItsLine) {
   EXPECT_EQ(error.find("not valid JSON: parse error at line 2, column 14"), 0u) << error;
 }
 
-TEST(Configuration, NameWithoutFileSaysWhatToGive) {
+TEST(Configuration, ANameWithoutFileIsRefusedWithWhatToGive) {
   try {
     load_configuration("nonesuch");
     FAIL();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Where the files lie that belong to the program: configs/, rtl/, scripts/.
+// Finds the program's own files: configs/, rtl/, scripts/.
 #pragma once
 
 #include <string>

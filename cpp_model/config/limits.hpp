@@ -14,7 +14,7 @@ inline uint32_t longest_program(const Configuration& configuration) { return (1u
 /// Throws InputError when a program is longer.
 void check_program_length(const Configuration& configuration, uint32_t instructions);
 
-/// Cycles in which no performance counter can begin anew: the fastest counts each thread in each of them.
+/// Cycles in which no performance counter can wrap: the fastest counts each thread in each of them.
 inline uint64_t counted_cycles(const Configuration& configuration) {
   return ((uint64_t{1} << configuration.counter_bits) - 1) / configuration.contents();
 }

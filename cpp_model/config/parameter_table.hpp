@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The rows of config/parameters.hpp as objects: for whoever goes through all parameters.
+// The rows of config/parameters.hpp as objects: for code that goes through all parameters.
 #pragma once
 
 #include <optional>
@@ -86,8 +86,8 @@ std::vector<std::string_view> sections();
 /// Those of its chip: "chip", "chip.memory", ...
 std::vector<std::string_view> chip_sections();
 
-/// Whether the type has it: those that are timed by events stand once, and have no other; what an ALU may lack has only
-/// who may lack something.
+/// Whether the type has it: those that are timed by events stand once, and have no other; only an ALU that may lack
+/// something has what it may lack.
 bool applies(const AluParameter& parameter, AluType type);
 /// What the parameter may be in a configuration: a depth begins at least_depth().
 Range range_of(const AluParameter& parameter, AluType type, const Configuration& configuration);

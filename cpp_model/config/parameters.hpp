@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The one table of a machine's parameters: of the compute unit, and of the chip around it. Members of Configuration,
-// what a configuration file may say and its schema, docs/machine/parameters.md, parameter lists of the Verilog and
+// the fields of a configuration file and its schema, docs/machine/parameters.md, parameter lists of the Verilog and
 // their checks, raypool.core and the configurations that tests walk are derived from it. docs/develop/where.md adds a
 // parameter.
 #pragma once
@@ -28,7 +28,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 // A row: [part,] name, type in C++, default, values it may have, values that tests try, what it is.
 //   UNIT(name, ...)        of the whole unit: `name` in configuration files and in C++, NAME in the Verilog
 //   PART(part, name, ...)  of one part: `part.name` in files, part_name in C++, PART_NAME in the Verilog. Its modules
-//                          include part_parameters.vh, and whoever instantiates them part_parameter_map.vh
+//                          include part_parameters.vh, and modules that instantiate them part_parameter_map.vh
 //   ARITHMETIC(name, ...)  a mode of the arithmetic: `arithmetic.name` in files, name in C++, NAME in the Verilog
 // clang-format off
 #define RAYPOOL_PARAMETERS(UNIT, PART, ARITHMETIC) \
@@ -55,7 +55,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   PART(data_cache, mshrs, uint32_t, 4, integers(1, 16), tried(1, 2, 3, 4, 16), \
        "miss-status holding registers: lines that may be on their way at once") \
   ARITHMETIC(subnormals, Subnormals, Subnormals::Ieee, names("ieee", "flush", "none"), all(), \
-             "subnormal numbers: as IEEE 754 says, or zero, or none: where one arises the unit stops with a fault") \
+             "subnormal numbers: as in IEEE 754, or zero, or none: where one arises the unit stops with a fault") \
   ARITHMETIC(significand, uint32_t, 24, integers(11, 24), tried(11, 13, 16, 24), \
              "bits of a float's significand, with its leading one; what a word has below them counts as zero") \
   ARITHMETIC(slow_unit, SlowUnit, SlowUnit::Exact, names("exact", "newton2", "newton1", "newton0"), all(), \
@@ -77,7 +77,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP(tile_order, TileOrder, TileOrder::Rows, names("rows", "hilbert"), \
        "order in which tiles are cast: rows from the top, or along a Hilbert curve, each beside the last") \
   CHIP(shading, Shading, Shading::Kernel, names("kernel", "traverser"), \
-       "who adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
+       "what adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
   CHIP(reflections, bool, true, on_or_off(), "there is a kernel that casts reflections; without it a frame has none") \
   CHIP(culling, bool, false, on_or_off(), "rays that cannot add to the picture are left out") \
   CHIP_PART(thresholds, rays, uint32_t, 48, integers(0, 1 << 20), \
@@ -94,11 +94,11 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP_PART(hardware_traverser, lanes, uint32_t, 4, integers(1, 31), \
             "lanes, each with a pipe that begins to test a node of four boxes in a cycle") \
   CHIP_PART(hardware_traverser, triangle_pipes, uint32_t, 2, integers(1, 31), \
-            "triangles whose test begins in a cycle: pipes that lanes share") \
+            "triangle tests that begin in a cycle: pipes that lanes share") \
   CHIP_PART(hardware_traverser, stack_entries, uint32_t, 12, integers(8, 64), \
             "entries that a ray's stack keeps; older ones go to the memory, four at a time") \
   CHIP_PART(hardware_traverser, cache_banks, uint32_t, 8, powers_of_two(1, 16), \
-            "banks of each cache: a line each in a cycle, for all who want that line") \
+            "banks of each cache: a line each in a cycle, for all lanes that want that line") \
   CHIP_PART(hardware_traverser, node_cache_bytes, uint32_t, 65536, powers_of_two(512, 1 << 24), \
             "size, in lines of a node, 64 bytes") \
   CHIP_PART(hardware_traverser, node_cache_ways, uint32_t, 4, powers_of_two(2, 16), "lines of a set") \
@@ -147,7 +147,7 @@ struct Range {
   Form form;
   int least, greatest;                      ///< of form Instructions: the greatest is the set of all
   std::array<std::string_view, 8> names{};  ///< of 0, 1, ... of form Name
-  size_t alu = 0;                           ///< number of the type whose instructions they are, of form Instructions
+  size_t alu = 0;                           ///< number of the type that has these instructions, of form Instructions
 
   constexpr bool has(int value) const {
     return value >= least && value <= greatest && (form != Form::PowerOfTwo || (value & (value - 1)) == 0) &&

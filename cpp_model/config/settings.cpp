@@ -89,7 +89,7 @@ Json parse_value(const ConfigurationField& field, const std::string& text) {
       throw InputError(fmt::format("--set {}={}{}", field.path, text,
                                    did_you_mean(nearest, fmt::format("it must be {}", text_of(field.range)))));
     }
-    case Range::Form::Instructions: {  // imul,sar; nothing: none. Who reads the file checks their names
+    case Range::Form::Instructions: {  // imul,sar; nothing: none. Reading the file checks their names
       Json list = Json::array();
       std::istringstream names(text);
       for (std::string name; std::getline(names, name, ',');) list.push_back(name);

@@ -23,7 +23,7 @@ std::vector<ConfigurationField> fields();
 nlohmann::ordered_json::json_pointer pointer_to(std::string path);
 
 /// Puts "FIELD=VALUE" into `json`, the content of a configuration file; one text may hold several, with spaces between.
-/// Values of another type than the field's are refused; whether the value is possible, who reads the file checks.
+/// Values of another type than the field's are refused; whether the value is possible is checked when the file is read.
 /// Throws InputError, which names the nearest fields when there is none such.
 void set_fields(nlohmann::ordered_json& json, const std::vector<std::string>& texts);
 

@@ -50,7 +50,7 @@ TEST(Settings, WhatFollowsAFieldFollowsIt) {
   EXPECT_EQ(load_configuration("8w8c", {"chip.intersection_pool.size=64"}).chip.held_limit, 64);
 }
 
-TEST(Settings, TheNameTellsWhatWasChanged) {
+TEST(Settings, TheNameShowsWhatWasChanged) {
   const auto name = [](const std::vector<std::string>& set) { return load_configuration("8w8c", set).name; };
   EXPECT_EQ(name({"alus.flt.count=2", "warps=4"}), "8w8c+warps-4+alus.flt.count-2");
   EXPECT_EQ(name({"warps=4", "alus.flt.count=2", "warps=2"}), "8w8c+warps-2+alus.flt.count-2");

@@ -23,7 +23,7 @@ std::vector<UnusedField> unused_fields(const Configuration& configuration);
 /// Throws InputError, one sentence, if `set` of the configuration names one of them.
 void refuse_unused_settings(const Configuration& configuration);
 
-/// The same for who runs compute programs: of the chip they have the memory alone.
+/// The same for runs of compute programs: of the chip they have the memory alone.
 void refuse_settings_of_frames(const Configuration& configuration);
 
 /// The sentence of those that the file sets to something else than machines have without it; of a configuration that

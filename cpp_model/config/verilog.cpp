@@ -18,7 +18,7 @@ std::string parameter_line(const std::string& name, int value) {
 
 std::string connection_line(const std::string& name) { return fmt::format("  .{0}({0}),\n", name); }
 
-/// Elaboration stops at the missing module, whose name says why.
+/// Elaboration stops at the missing module; its name is the message.
 std::string check(const std::string& name, Range range) {
   std::string wrong = fmt::format("{0} < {1} || {0} > {2}", name, range.least, range.greatest);
   if (range.form == Range::Form::Instructions)

@@ -152,7 +152,7 @@ TEST(JsonText, AKeyTwiceInOneObjectIsRefusedAndInTwoIsNot) {
   }
 }
 
-TEST(JsonText, WhatIsNoJsonIsAnInputErrorWithoutTheLibrarysTag) {
+TEST(JsonText, MalformedJsonIsAnInputErrorWithoutTheLibrarysTag) {
   try {
     parse_json("{\"a\": \xe9}", "file.json");
     FAIL();

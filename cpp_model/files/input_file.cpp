@@ -38,7 +38,7 @@ std::string read_file(const std::string& path, const std::string& what) {
   for (ssize_t count = 1; error == 0 && count != 0;) {
     count = read(file, part.data(), part.size());
     if (count > 0) text.append(part.data(), static_cast<size_t>(count));
-    // A folder can be opened, and says what it is when it is read.
+    // A folder can be opened; the error comes when it is read.
     if (count < 0 && errno != EINTR) error = errno;
   }
   if (file >= 0) close(file);

@@ -12,7 +12,7 @@ namespace raypool {
 /// key twice, of which one would be lost.
 nlohmann::ordered_json parse_json(const std::string& text, const std::string& where);
 
-/// What a JSON library's error says, without the bracketed tag before it, which means nothing to a user.
+/// The message of a JSON library's error, without the bracketed tag before it, which means nothing to a user.
 std::string json_reason(const std::exception& error);
 
 /// The text of a file, indented by `indent`. Names of files need not be UTF-8, as JSON

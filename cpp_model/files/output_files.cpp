@@ -36,7 +36,7 @@ Place find_place(const fs::path& path) {
   Place place;
   if (stat(path.c_str(), &status) == 0) {
     if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
-    // Who may not write into a file may not replace it either.
+    // A file that may not be written may not be replaced either.
     if (access(path.c_str(), W_OK) != 0) fail(path, errno);
     place.stream = !S_ISREG(status.st_mode);
     place.mode = status.st_mode & 07777u;
@@ -46,7 +46,7 @@ Place find_place(const fs::path& path) {
   place.file = path;
   for (int links = 0; !place.stream && fs::is_symlink(fs::symlink_status(place.file)); ++links) {
     if (links == kMostLinks) fail(path, ELOOP);
-    // What stands in /proc are open files: /dev/stdout, sent to a file, belongs to who has opened it.
+    // What stands in /proc are open files: /dev/stdout, sent to a file, is owned by the process that has opened it.
     place.stream = place.file.string().compare(0, 6, "/proc/") == 0;
     place.file = place.file.parent_path() / fs::read_symlink(place.file);
   }
@@ -64,7 +64,7 @@ int write_and_close(int file, const std::string& content) {
     if (count > 0) done += static_cast<size_t>(count);
     if (count < 0 && errno != EINTR) error = errno;
   }
-  // Network file systems say only now that the disk is full.
+  // Network file systems report a full disk only now.
   if (close(file) != 0 && error == 0) error = errno;
   return error;
 }
@@ -87,7 +87,7 @@ fs::path OutputFiles::begin(const fs::path& path, bool whole) {
   clear(place.file);
   fs::path temporary = place.file.parent_path() / temporary_name(place.file.filename());
   parts_.push_back({temporary, place.file, RemovedWhenStopped(temporary)});
-  // Made here, so that a folder that may not be written to is told before the work.
+  // Made here, so that a folder that may not be written to is reported before the work.
   const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   const int error = file < 0 ? errno : 0;
   if (error != 0) fail(path, error);

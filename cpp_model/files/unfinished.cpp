@@ -68,7 +68,7 @@ void on_signal(int number) {
   errno = error;
 }
 
-/// Whoever clears a folder has it for a moment only.
+/// A process that clears a folder holds it for a moment only.
 void hold(int folder) {
   for (int turn = 0; turn < 50 && flock(folder, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++turn)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -182,7 +182,7 @@ void FolderHold::clear(const std::string& name) {
       fs::rename(path, kept, failed);
     else
       fs::remove(path, failed);
-    // What belongs to a waveform is not told apart.
+    // Parts of a waveform are not reported one by one.
     if (failed || !teller() || file.size() != process.size() + 2 + name.size()) continue;
     teller()(keep && !empty ? fmt::format("a run that was killed left its waveform: it is {} now", kept.string())
                             : fmt::format("removed {}, which a run that was killed left unfinished", path.string()));

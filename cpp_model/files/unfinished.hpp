@@ -36,7 +36,7 @@ void stop_point();
 /// The first signal that came while a KeepRunning lived; 0: none.
 int stop_signal();
 
-/// Ends the program as the signal does whose handler nobody has set.
+/// Ends the program as the signal does when no handler is set.
 [[noreturn]] void end_by(int signal);
 
 /// Registers the path of a file for the signals to remove while it lives.
@@ -61,7 +61,7 @@ class FolderHold {
   FolderHold& operator=(FolderHold&& other) noexcept;
 
   /// Of the file `name` what programs have left that were killed while they wrote it, under the names of
-  /// temporary_name(), unless somebody else holds the folder. A waveform (.fst) gets the name killed-PID-NAME, with
+  /// temporary_name(), unless another process holds the folder. A waveform (.fst) gets the name killed-PID-NAME, with
   /// what lies beside it; everything else is removed. Calls what tell_unfinished() has set.
   void clear(const std::string& name);
 

@@ -14,8 +14,7 @@ namespace raypool {
 /// Assembles a whole program. Throws InputError "source_name:line:column: what is wrong; what is right".
 Program assemble(std::string_view text, const std::string& source_name);
 
-/// One instruction as text that assembles to the same 64 bits: targets as numbers, what
-/// is no proper instruction as `.word`.
+/// One instruction as text that assembles to the same 64 bits: targets as numbers, a malformed instruction as `.word`.
 std::string disassemble(uint64_t encoding);
 
 /// A whole program, with labels and `.kernel` lines; it assembles to the same program. Each

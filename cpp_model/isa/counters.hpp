@@ -25,10 +25,10 @@ namespace raypool {
   SINGLE(WarpsNotLaunched,        8, "sum over busy cycles of the warps for which the launch has no thread") \
   SINGLE(WarpsEnded,              9, "of those that have exited, while others have not") \
   SINGLE(WarpsFetching,          10, "of those that have no instruction under way and wait for the next") \
-  SINGLE(WarpsInMem,             11, "of those whose task Mem has") \
-  SINGLE(WarpsInRay,             12, "of those whose task Ray has, importing and exporting ones not counted") \
-  SINGLE(WarpsImporting,         13, "of those whose rin waits for a package that has not arrived") \
-  SINGLE(WarpsExporting,         14, "of those whose rout or rfb waits for the one before to leave") \
+  SINGLE(WarpsInMem,             11, "of these, with a task in Mem") \
+  SINGLE(WarpsInRay,             12, "of these, with a task in Ray, importing and exporting ones not counted") \
+  SINGLE(WarpsImporting,         13, "of these, with a rin that waits for a package that has not arrived") \
+  SINGLE(WarpsExporting,         14, "of these, with a rout or rfb that waits for the one before to leave") \
   SINGLE(FltOverlapped,          15, "tasks of Flt behind which the next of their triple was read at once") \
   BY_TYPE(Unused,                16, "busy cycles x instances that were free for a task and got none") \
   BY_TYPE(Waiting,               24, "sum over busy cycles of the warps that wanted this type and were not granted") \

@@ -81,7 +81,7 @@ constexpr bool is_triple(const InstructionInfo& info) {
 }
 /// The instruction that element 0 .. 2 of a triple is.
 Instruction element(const Instruction& triple, int number);
-/// The triple whose elements are such instructions, with one register ra for all or not; null: there is none.
+/// The triple made of such instructions, with one register ra for all or not; null: there is none.
 const InstructionInfo* find_triple(const InstructionInfo& element, bool one_ra);
 /// All elements of the triple have the same register ra.
 bool has_one_ra(const InstructionInfo& triple);

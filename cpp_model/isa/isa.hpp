@@ -124,7 +124,7 @@ enum class Kind : uint8_t {
 /// What a configuration must have for an instruction to be legal.
 enum class Feature : uint8_t {
   Base,              ///< nothing: every machine has the instruction
-  Optional,          ///< nothing: every machine has it whose alus.TYPE.without does not name it
+  Optional,          ///< nothing: every machine has it unless its alus.TYPE.without names it
   FusedMultiplyAdd,  ///< arithmetic.fma
   Triples,           ///< triples
   FusedTriples,      ///< both

@@ -77,7 +77,7 @@ bit a thread, of which p0 is all ones. What a mask does to each kind of result s
 constexpr const char* kText = R"(
 `target` and `end` are the halves of the immediate of `jany`, `jnone` and `call`; `loop` has its end in the low half.
 Fields that an instruction does not use are written as 0 by the assembler and ignored by the machine. An instruction
-whose unit and operation stand in no row below is illegal, and so is one that the configuration has not: `ffma` without
+with unit and operation in no row below is illegal, and so is one that the configuration has not: `ffma` without
 `arithmetic.fma`, a triple without `triples`, `ffma3` and `ffma3s` without both, and one with an *o* that its type's
 `without` names. One that names a register, predicate or argument which the configuration has not (`registers`,
 `predicates`, `arguments`) is illegal too; of a triple those of all elements count.
@@ -91,7 +91,7 @@ A triple is three instructions, its elements 0, 1 and 2, which leave what the th
 the other, under one guard. Of element e
 
 - every register number is e higher, modulo 16: behind r15 comes r0. With an `s` at the end of the name all elements
-  have the same ra, and so have those of `ld3`, whose ra is an address;
+  have the same ra, and so have those of `ld3`, where ra is an address;
 - an immediate in place of b is the same for all;
 - the ray word of `rld3` and `rst3` is e higher. One above 18, or `intersection_words` - 3, is illegal, as the last
   word would be outside;

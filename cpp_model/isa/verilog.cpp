@@ -119,7 +119,7 @@ std::string named_numbers_verilog() {
   };
   const std::string x = fmt::format("encoding[{}:{}]", field::kX.lsb + 3, field::kX.lsb);
   return names("isa_names_ra", "has a register in ra", {Operand::Ra, Operand::Address}) +
-         names("isa_names_b", "has a register in rb, unless bit 37 says that b is the immediate", {Operand::B}) +
+         names("isa_names_b", "has a register in rb, unless bit 37 makes b the immediate", {Operand::B}) +
          names("isa_names_rb", "has a register in rb", {Operand::Rb}) +
          names("isa_names_rc", "has a register in x", {Operand::Rc}) +
          names("isa_names_px", "has a predicate in x", {Operand::Px}) +

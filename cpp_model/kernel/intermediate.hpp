@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The compiler's intermediate code: machine instructions whose registers and predicates
-// are not yet numbered as the machine's.
+// The compiler's intermediate code: machine instructions with registers and predicates that are not yet numbered as the
+// machine's.
 #pragma once
 
 #include <array>
@@ -81,7 +81,7 @@ struct Effects {
 };
 Effects effects(const Op& op);
 
-/// True for an instruction that may be left out when nobody reads its result.
+/// True for an instruction that may be left out when its result is never read.
 bool is_pure(const Op& op);
 /// True for a copy of one register or predicate to another, in all lanes that matter.
 bool is_copy(const Op& op);

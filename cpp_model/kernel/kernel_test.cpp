@@ -75,7 +75,7 @@ TEST(KernelLanguage, AddressesTakeConstantSums) {
             "arg r1, 0\nld r0, [r1+12]\nst [r1+12], r0\nexit\n");
 }
 
-TEST(KernelLanguage, CopiesThatNobodyChangesCostNothing) {
+TEST(KernelLanguage, CopiesThatNeverChangeCostNothing) {
   // NOLINTBEGIN(performance-unnecessary-value-param, performance-unnecessary-copy-initialization): tested
   const auto twice = [](Float x, Vector<RecordedKernel> v) {
     return Vector<RecordedKernel>{x * v.x, x * v.y, x * v.z};
@@ -131,7 +131,7 @@ TEST(KernelLanguage, ExampleOfTheDocumentRunsBothWays) {
   }
 }
 
-TEST(KernelLanguage, WhatNobodyNeedsIsLeftOut) {
+TEST(KernelLanguage, UnusedCodeIsLeftOut) {
   EXPECT_EQ(code_of([](RecordedKernel& k) {
               const Float unused = k.float_word(1) * k.float_argument(2);
               const Bool condition = unused < 1.0f;

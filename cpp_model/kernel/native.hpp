@@ -13,7 +13,7 @@
 
 namespace raypool::kernel {
 
-/// What a thread reads from ray words that nobody has written: a NaN that shows up in pictures and comparisons.
+/// What a thread reads from ray words that were never written: a NaN that shows up in pictures and comparisons.
 inline constexpr uint32_t kUndefinedWord = 0x7fdeadadu;
 
 /// kFused: as a machine with arithmetic.fma computes. kNarrow: with a significand of less than 24 bits, the thread's.

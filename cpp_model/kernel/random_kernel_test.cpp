@@ -16,8 +16,8 @@ namespace {
 constexpr uint32_t kMemoryBytes = 4096;
 constexpr int kSlotBytes = 64;  // of memory a thread
 
-/// Writes a kernel whose shape follows from the seed alone, so that it comes out the same for
-/// every K and however often a body is run.
+/// Writes a kernel with a shape that follows from the seed alone, so that it comes out the same for every K and however
+/// often a body is run.
 template <typename K>
 class RandomKernel {
   using Bool = typename K::Bool;

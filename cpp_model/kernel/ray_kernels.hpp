@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The ray kernels' source. kernels.hpp says what each is for, packages.hpp what the words
-// hold, docs/use/kernels.md has the formulas.
+// The ray kernels' source. kernels.hpp describes what each is for, packages.hpp what the words hold,
+// docs/use/kernels.md has the formulas.
 #pragma once
 
 #include <limits>
@@ -46,8 +46,8 @@ struct Lighting {
   std::optional<typename K::Bool> lit{};  // with culling: whether it is not behind
 };
 
-/// The package's words up to the limit are those of a normal intersection; `back` says that
-/// the ray met the normal's back side.
+/// The package's words up to the limit are those of a normal intersection; `back` is set if the ray met the normal's
+/// back side.
 template <typename K>
 Lighting<K> light_hit(K& k, const Vector<K>& origin, const Vector<K>& normal, const typename K::Bool& back) {
   using Float = typename K::Float;

@@ -12,8 +12,8 @@ namespace raypool::kernel {
 
 /// The layout of the record for these kernels, recorded with whole intersections. A word is needed if one of them reads
 /// it, or exports it without having written it. Words of the ray stay where they are, since an export takes them from
-/// there; words of the hit fill the places of those that nobody needs, where no kernel writes these before it has read
-/// them, then those behind the ray.
+/// there; words of the hit fill the places of those that no kernel needs, where no kernel writes these before it has
+/// read them, then those behind the ray.
 RecordLayout compact_layout(const std::vector<Function>& kernels);
 
 }  // namespace raypool::kernel

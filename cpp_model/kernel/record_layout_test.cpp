@@ -117,7 +117,7 @@ TEST(RecordLayout, IsTheWholeIntersectionByDefault) {
   for (int word = 0; word < kIntersectionWords; ++word) EXPECT_EQ(layout.place[word], word);
 }
 
-TEST(RecordLayout, TellsWhoHasTooFewWords) {
+TEST(RecordLayout, NamesKernelsWithTooFewWords) {
   Configuration configuration;
   configuration.intersection_words = 15;
   try {

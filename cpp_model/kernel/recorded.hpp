@@ -3,7 +3,7 @@
 // The kernel language recorded: each operation becomes an instruction of intermediate
 // code. kernel.hpp describes the language.
 // A value owns a virtual register or predicate. Operands are taken as
-// Float/Int/BoolOperand, which notice the source line.
+// Float/Int/BoolOperand, which record the source line.
 #pragma once
 
 #include <cstdint>

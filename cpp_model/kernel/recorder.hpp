@@ -48,7 +48,7 @@ class Recorder {
   int emit_predicates(Opcode opcode, int px, int pb, const Location& where);
   int emit_select(const Condition& condition, int a, int b, const Location& where);
 
-  /// variable = source, where `temporary` says that nobody else reads the source.
+  /// variable = source; `temporary`: the source is not read again.
   void assign_register(int variable, int source, bool temporary);
   void assign_predicate(int variable, int source, bool temporary);
   /// A predicate that equals the condition within the current mask.
@@ -58,7 +58,7 @@ class Recorder {
   void begin_if(const Condition& condition);
   void begin_else();
   void end_if();
-  /// `condition` is a predicate that belongs to the loop alone.
+  /// `condition` is a predicate of the loop alone.
   void begin_loop(int condition, const Location& where);
   /// `condition`: evaluated at the end of the body.
   void end_loop(int condition, bool temporary);

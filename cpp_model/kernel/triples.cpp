@@ -94,7 +94,7 @@ class Segment {
     return std::nullopt;
   }
 
-  // Three leaves become one, whose registers follow each other.
+  // Three leaves become one, with registers that follow each other.
   void form_leaves(Opcode opcode, bool used_alike, int& most) {
     std::vector<int> places;
     for (int i = 0; i < static_cast<int>(ops_.size()); ++i)

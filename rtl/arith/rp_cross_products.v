@@ -32,7 +32,7 @@ module rp_cross_products #(
   assign {y, x} = pair_2;
   assign {next_y, next_x} = next_2;
 
-  // ---- 3: both products as sums of two numbers; 4: as one, and which of the two reaches higher up, as exponents say
+  // ---- 3: both products as sums of two numbers; 4: as one, and which of the two reaches higher up, by their exponents
   wire [P-1:0] sum_a, carry_a, sum_b, carry_b;
   wire zero_x = x[M+:11] == 11'd0, zero_y = y[M+:11] == 11'd0;
   wire zero_next_x = next_x[M+:11] == 11'd0, zero_next_y = next_y[M+:11] == 11'd0;

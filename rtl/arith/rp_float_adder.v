@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Floating-point adder and subtracter, three stages: align, add and begin to normalise, normalise and round.
-// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later.
+// Operands are taken with enable_i[0]; enable_i[k] must be high when stage k holds that operation k cycles later.
 // result_o is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be
 // ORed. Nearest even, one NaN (quiet, positive).
 // SUBNORMALS 0: IEEE; 1: subnormal operands and results become the zero of their sign. A subnormal sum is exact, so it
-// never depends on rounding whether one is flushed. 2: and
-// tiny_o says, with result_o, that a result was.
+// never depends on rounding whether one is flushed. 2: and tiny_o flags, with result_o, a result that was.
 `default_nettype none
 module rp_float_adder #(
   parameter integer EXPONENT_BITS = 8,

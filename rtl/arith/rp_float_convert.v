@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Conversions between single precision and 32-bit signed integers, and minimum and maximum, in three
 // stages like the adder's and multiplier's.
-// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o
-// is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed.
+// Operands are taken with enable_i[0]; enable_i[k] must be high when stage k holds that operation k cycles later.
+// result_o is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed.
 // op_i: 0 smaller, 1 larger (the number if one is a NaN, -0 below +0), 2 float to integer (towards zero, saturating,
 // NaN gives 0), 3 integer to float (nearest even). SUBNORMALS above 0: minimum and maximum see, and give, subnormal
 // operands as the zero of their sign. SIGNIFICAND below 24: what a word has below so many bits is not looked at, and

@@ -3,11 +3,11 @@
 // Floating-point fused multiply-add, five stages: a * b + c, rounded once.
 // 0: product as two numbers (multiply_tree), distance of c, 1: their sum; c is aligned with it, 2: addition or
 // subtraction, 3: magnitude, the leading one brought into the top eight bits, 4: to the top, rounding.
-// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later.
+// Operands are taken with enable_i[0]; enable_i[k] must be high when stage k holds that operation k cycles later.
 // result_o is combinational, valid in stage 4, and zero while enable_i[4] is low, so that units of a lane can be
 // ORed. Nearest even, one NaN (quiet, positive).
 // SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when
-// it is tiny after rounding, as in SSE. 2: and tiny_o says, with result_o, that it was.
+// it is tiny after rounding, as in SSE. 2: and tiny_o flags, with result_o, that it was.
 //
 // With p = MANTISSA_BITS + 1 the window has c in its top p bits when c dominates, two free bits, the product of 2p
 // bits, and bits below it in which the last one collects what is shifted out of c. Two below the product suffice: a

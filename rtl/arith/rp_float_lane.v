@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // One lane of the Flt ALU and the result register behind it. FMA 0: adder, multiplier and the unit
 // of conversions, each in three stages.
-// FMA 1: the fused unit, which adds a * 1 + b and multiplies too, in five, and the
-// conversions, whose results wait for two more.
+// FMA 1: the fused unit, which adds a * 1 + b and multiplies too, in five, and the conversions; their results wait for
+// two more.
 // add_enable_i, multiply_enable_i, fuse_enable_i and convert_enable_i: bit 0 takes the operands into that unit, bit k
-// says that stage k holds that operation k cycles later; at most one unit is enabled in a stage.
+// is high when stage k holds that operation k cycles later; at most one unit is enabled in a stage.
 // result_o is loaded at the end of the last stage and stays until the next one. tiny_o, for one cycle from then on: it
 // was flushed.
 // SIGNIFICAND below 24: the units have so many bits; what a word has below them is not looked at, and zero in results.

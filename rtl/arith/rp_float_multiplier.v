@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Floating-point multiplier, three stages: the product as two numbers (multiply_tree), their sum with its leading one
 // brought to the top two bits, rounding.
-// The tree takes both operands as normal numbers, so that it need not wait for what the exponents say; what a subnormal
-// one has too much is taken off in the sum. The product of two subnormal ones is zero however it is rounded.
-// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later.
+// The tree takes both operands as normal numbers, so that it need not wait for the exponents; what a subnormal one has
+// too much is taken off in the sum. The product of two subnormal ones is zero however it is rounded.
+// Operands are taken with enable_i[0]; enable_i[k] must be high when stage k holds that operation k cycles later.
 // result_o is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be
 // ORed. Nearest even, one NaN (quiet, positive).
 // SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when
-// it is tiny after rounding, as in SSE. 2: and tiny_o says, with result_o, that it was.
+// it is tiny after rounding, as in SSE. 2: and tiny_o flags, with result_o, that it was.
 `default_nettype none
 module rp_float_multiplier #(
   parameter integer EXPONENT_BITS = 8,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// A finite float as a significand whose leading one is not stored, subnormal ones too, and its exponent, a cycle later.
+// Splits a finite float, subnormal or not, into exponent and significand, its leading one not stored; a cycle later.
 // Infinite and not a number keep the exponent that they have.
 `default_nettype none
 module rp_float_parts (

@@ -5,7 +5,8 @@
 // It needs no bit behind the first that is rounded off: a quotient that ended there would have one more bit than its
 // numerator. Nor is it ever rounded up to the next power of two.
 // Promises: x / 0 is infinite, 0 / 0 a NaN, with the sign of both.
-// Must be given: finite numbers, none subnormal, whose quotient is neither too large for the format nor subnormal.
+// Must be given: finite numbers, none subnormal, with a quotient that is neither too large for the format nor
+// subnormal.
 `default_nettype none
 module rp_float_quotient #(
   parameter integer EXPONENT_BITS = 11,

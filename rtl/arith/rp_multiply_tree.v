@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Product of a and b, or c + a * b with ADD, or c - a * b with ADD and NEGATE, as two numbers whose sum, modulo
-// 2^OUT_BITS, it is: radix-4 Booth digits of b, then a tree of carry-save adders. Combinational. a_i is unsigned; b_i
-// is unsigned, or signed with B_SIGNED, of up to 61 bits. OUT_BITS may be less than the product has: the rest is free.
+// Product of a and b, or c + a * b with ADD, or c - a * b with ADD and NEGATE, as two numbers that add up to it modulo
+// 2^OUT_BITS: radix-4 Booth digits of b, then a tree of carry-save adders. Combinational. a_i is unsigned; b_i is
+// unsigned, or signed with B_SIGNED, of up to 61 bits. OUT_BITS may be less than the product has: the rest is free.
 // With CUT the rows are left out below 2^CUT: the sum is less than it should be by at most 2^CUT for each pair of bits
 // of b below 2^CUT, CUT/2 of them rounded up, and how much less is not said.
 // With ENCODED b_i is what booth_digits made of b.

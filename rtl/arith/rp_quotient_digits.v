@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The digits of a quotient of two significands of BITS bits, whose first bits are ones: one quotient in every cycle,
-// 1 + BITS / 2 cycles later. An array of digits 0 .. 3: of each remainder, four times, so many divisors are taken as
-// there is room for. The quotient's leading bit is a one, here or a place later; it is not among the digits.
+// The digits of a quotient of two significands of BITS bits, their first bits ones: one quotient in every cycle, 1 +
+// BITS / 2 cycles later. An array of digits 0 .. 3: of each remainder, four times, so many divisors are taken as there
+// is room for. The quotient's leading bit is a one, here or a place later; it is not among the digits.
 `default_nettype none
 module rp_quotient_digits #(
   parameter integer BITS = 32,        // an even number

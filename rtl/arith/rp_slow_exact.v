@@ -7,8 +7,8 @@
 // them. 7: m*v or m*m, 8: its sum, less w or v, 9: for frsqrt times m, 10: the sign, rounding.
 // With a SIGNIFICAND of p bits, 24 here, the error must be below 2^-p, m has one bit more than a float, and 3 * p - 1
 // fraction bits of m*m*v decide.
-// enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage
-// 10 and zero while enable_i[9] is low.
+// enable_i[k] is high when stage 1 + k holds a task. result_o is combinational in stage 10 and zero while enable_i[9]
+// is low.
 `default_nettype none
 module rp_slow_exact #(
   parameter integer SIGNIFICAND = 24,

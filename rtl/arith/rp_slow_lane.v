@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// One lane of the Slw ALU: STAGES stages, and the result register behind them. enable_i[k] says
-// that stage k holds a task of this lane.
+// One lane of the Slw ALU: STAGES stages, and the result register behind them. enable_i[k] is high when stage k holds a
+// task of this lane.
 // root_i and unary_i name the operation: 00 fdiv, 10 fsqrt, 11 frsqrt, 01 frcp. SLOW_UNIT 0:
 // exact, 1 .. 3: two, one, no Newton steps. SIGNIFICAND below 24: what a word has below so many bits is not looked at,
 // and zero in the result. tiny_3_o, for one cycle, in stage 3: the result is a subnormal number that becomes zero.

@@ -6,7 +6,7 @@
 // STEPS 2: a second one, on the quotient.
 // Then the quotient is rounded to nearest even, but never to another exponent: a true quotient is not that near to 2.
 // docs/machine/float-units.md defines the results, cpp_model/arith/arith.cpp does the same integer steps.
-// enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage LAST and zero while it holds none.
+// enable_i[k] is high when stage 1 + k holds a task. result_o is combinational in stage LAST, zero while it holds none.
 `default_nettype none
 module rp_slow_newton #(
   parameter integer SIGNIFICAND = 24,

@@ -16,7 +16,7 @@
 // With a SIGNIFICAND of p bits, 24 here, what an operand has below them is not looked at, v and w have p - 1 fraction
 // bits and zeros below, and q has p - 1 - shift, shift 0 .. p.
 // SUBNORMALS 0: IEEE; 1: subnormal operands count as zero, results below the normal numbers are zero
-// (no quotient there rounds up to one); 2: and tiny_3_o says for one cycle, in stage 3, that a result is such a one.
+// (no quotient there rounds up to one); 2: and tiny_3_o flags such a result for one cycle, in stage 3.
 `default_nettype none
 module rp_slow_prepare #(
   parameter integer SUBNORMALS = 0,
@@ -161,7 +161,7 @@ module rp_slow_prepare #(
       if (s2_special_q) begin
         s3_exponent_q <= {8{s2_infinite_q || s2_nan_q}};
       end else if (s2_four_q) begin
-        special = 1'b1;                         // a power of four, whose result is no quotient below 2
+        special = 1'b1;                         // a power of four: its result is no quotient below 2
         s3_exponent_q <= exponent[7:0] + 8'd1;
       end else if (!exponent[9] && (exponent[8] || &exponent[7:0])) begin
         special = 1'b1;

@@ -10,10 +10,10 @@
 // EXACT 0: cut off downwards are t and n at 30 fraction bits, e at 28, the n of n*e at 18, the
 // quotient at 30; |e| must be below 2^-12.
 // EXACT 1: for a caller that needs less. 2 + LESS bits fewer each, sums lose what multiply_tree leaves out, the
-// quotient has 24 - LESS fraction bits; |e| must be below 2^-14. rp_slow_exact.v says how far off that is. LESS 0 .. 8.
+// quotient has 24 - LESS fraction bits; |e| must be below 2^-14. rp_slow_exact.v gives its error. LESS 0 .. 8.
 // y_digits_i is what booth_digits makes of y.
-// enable_i[k] says that stage k holds a task; v_i, w_i, y_i and its digits are taken with enable_i[0]. root_1_i and
-// unary_1_i belong to the task in stage 1, root_2_i to that in stage 2. quotient_o is a register with 30 fraction bits.
+// enable_i[k] is high when stage k holds a task; v_i, w_i, y_i and its digits are taken with enable_i[0]. root_1_i and
+// unary_1_i are those of the task in stage 1, root_2_i that of stage 2. quotient_o is a register with 30 fraction bits.
 `default_nettype none
 module rp_slow_refine #(
   parameter integer EXACT = 0,

@@ -116,8 +116,8 @@ module rp_chip #(
   localparam integer RAY_BITS = $clog2(RAY_POOL_SIZE + 1);
   localparam integer LEVEL_BITS = $clog2(INTERSECTION_POOL_SIZE + 1);
 
-  // ---- Between two frames: all that waits or is on its way has gone, and the traverser asks for nothing more. What a
-  // frame began to fetch for nobody it forgets in its reset: no line comes back for a request of the frame before.
+  // ---- Between two frames: all that waits or is on its way has gone, and the traverser asks for nothing more. The
+  // reset drops the prefetches of the frame before: no line comes back for a request of that frame.
   reg ready_q;
   wire idle;
   wire starts = start_i && ready_q;
@@ -264,7 +264,7 @@ module rp_chip #(
     end
   endgenerate
 
-  // For who looks at a simulation: traces, and what is not needed here of what happens to rays and pixels.
+  // For simulation only: traces, and those events of rays and pixels that are not needed here.
   wire ray_held_up, pixel_valid;
   wire [1:0] pixel_unit;
   wire [3:0] quiet;
@@ -287,7 +287,7 @@ module rp_chip #(
                   store_trace_data, store_trace_mask, ray_trace_valid, ray_trace_warp, ray_trace_word, ray_trace_mask,
                   ray_trace_data};
 
-  // A launch has the block of the next tile, which eye rays need; kernels are told of no number of blocks.
+  // A launch has the block of the next tile, which eye rays need; kernels are given no number of blocks.
   rp_multiprocessor #(
     .UNITS(UNITS),
 `include "rp_unit_parameter_map.vh"

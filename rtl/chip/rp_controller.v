@@ -100,7 +100,7 @@ module rp_controller #(
   wire accepted = launch_valid_o && launch_ready_i;
   wire cast = accepted && kind_q == EYE;
 
-  // ---- What is seen of a cycle c is registered in c+1, as events of rays are by who reports them.
+  // ---- What is seen of a cycle c is registered in c+1, as events of rays are by the blocks that report them.
   reg ready_1_q, ready_2_q;
   reg [UNITS-1:0] done_q;
   reg [UNITS*EXPORT_BITS-1:0] exports_q;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The policy `fill`: full loads, a kernel ready behind the one that runs, and a look at what a kernel will produce and
-// at who waits at the ports. docs/machine/controller.md.
+// at what waits at the ports. docs/machine/controller.md.
 // What is seen in a cycle is decided in the next one.
 // Promises: as thesis_policy. Must be given: counts below 2^(COUNT_BITS - 2); kernels on record at most 2 x UNITS.
 `default_nettype none
@@ -28,7 +28,7 @@ module rp_fill_policy #(
   input  wire                   more_to_come_i,    // rays in the pool or in the units
   input  wire                   ahead_i,           // the unit still runs a kernel
   output reg  [1:0]             kind_o,            // 0: halt, 1: cast eye rays, 2: secondary, 3: shade
-  output wire [THREAD_BITS-1:0] threads_o          // 0 of eye rays, whose tile decides
+  output wire [THREAD_BITS-1:0] threads_o          // 0 of eye rays: their tile decides
 );
   `include "rp_policy_functions.vh"
   // More than one batch of the traverser can seldom be there.
@@ -49,7 +49,7 @@ module rp_fill_policy #(
 
   // What is seen, and what follows from it at once.
   reg [COUNT_BITS-1:0] room_q, shade_q, safe_q;
-  reg [COUNT_BITS-1:0] makers_q;          // threads of a secondary kernel for whose rays there is room
+  reg [COUNT_BITS-1:0] makers_q;          // threads of a secondary kernel that have room for their rays
   reg behind_q, eye_possible_q;
   reg waits_q;                            // for a full load
   reg alone_q;                            // nothing will come by itself

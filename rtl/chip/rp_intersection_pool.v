@@ -32,7 +32,7 @@ module rp_intersection_pool #(
   input  wire [1:0]                  request_unit_i,
   output reg                         beat_valid_o,
   output wire [127:0]                beat_data_o,
-  // whose pixel it is: word 3 of the beat that is shown
+  // the pixel that the package is of: word 3 of the beat that is shown
   output reg                         pixel_valid_o,
   output reg  [1:0]                  pixel_unit_o,
   // levels, for the controller

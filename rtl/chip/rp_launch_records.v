@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // What the kernels of a compute unit may still export. Each launch has a record until everything that its kernel has
-// exported has left the unit: how many packages there are the unit says itself when the kernel ends.
-// docs/machine/controller.md. Promises: what it shows is never less than what kernels may still export, and exact
-// when nothing is on record; all outputs are registers, and follow an event by a cycle, or a record's end by two. Must
-// be given: no launch while full_o; the packages of a unit in the order in which it has counted them.
+// exported has left the unit: the unit itself reports how many packages there are when the kernel ends.
+// docs/machine/controller.md. Promises: what it shows is never less than what kernels may still export, and exact when
+// nothing is on record; all outputs are registers, and follow an event by a cycle, or a record's end by two. Must be
+// given: no launch while full_o; the packages of a unit in the order in which it has counted them.
 `default_nettype none
 module rp_launch_records #(
   parameter integer CONTENTS = 64,                    // threads of a full kernel
@@ -42,10 +42,10 @@ module rp_launch_records #(
   reg [RECORDS*EXPORT_BITS-1:0] mark_q;
   reg [EXPORT_BITS-1:0] left_q;
 
-  // A record whose kernel's exports have all left: nothing that leaves now is of it. The first one goes.
+  // A record is drained when all exports of its kernel have left: nothing that leaves now is of it. The first one goes.
   reg [RECORDS-1:0] drained;
   reg [EXPORT_BITS-1:0] beyond;
-  // Whose a ray is, and which kernel ends.
+  // Which record a ray is of, and which kernel ends.
   reg [RECORDS-1:0] of_normal, of_shadow, ends;
   reg found_normal, found_shadow, found_end;
   integer i;

@@ -20,7 +20,7 @@ module rp_launch_rules #(
   input  wire [COUNT_BITS-1:0] tile_pixels_i,      // of the next one, inside the picture
   input  wire                  cast_i,             // it is cast
   input  wire [COUNT_BITS-1:0] cast_held_i,        // pixels that were held when that was decided
-  input  wire [COUNT_BITS-1:0] held_i,             // pixels that somebody works on
+  input  wire [COUNT_BITS-1:0] held_i,             // pixels that are being worked on
   input  wire [COUNT_BITS-1:0] shadow_rays_i,      // in the ray pool
   input  wire [COUNT_BITS-1:0] shadow_to_come_i,   // most that kernels may still export
   input  wire [COUNT_BITS-1:0] shadow_i,           // intersections that no kernel has been promised

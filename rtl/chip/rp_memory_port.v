@@ -9,7 +9,7 @@
 // taken. No output depends on an input of the same cycle.
 // Must be given: what is offered stays as it is until it is taken; reads at multiples of 64, or of 128 with a second
 // line; writes at multiples of 16, or of 32 with a second quadword; four beats a line, in the order in which the memory
-// has taken the reads, from the cycle in which it has. Who gets a beat takes it.
+// has taken the reads, from the cycle in which it has. A beat that is offered is always taken.
 `default_nettype none
 module rp_memory_port #(
   parameter integer QUEUE = 8,             // requests of the device that wait
@@ -82,7 +82,7 @@ module rp_memory_port #(
   localparam [31:0] LAST_OF_QUEUE = TRAVERSER_QUEUE - 1;
   localparam [NUMBER_BITS-1:0] LAST_PLACE = LAST_OF_QUEUE[NUMBER_BITS-1:0];
 
-  // ---- Who comes. Requests of the traverser are numbered; each of the device that waits knows how many came before.
+  // ---- Arrivals. Requests of the traverser are numbered; each of the device that waits knows how many came before.
   reg [QUEUE_BITS-1:0] waiting_q;              // the device's
   reg [NUMBER_BITS-1:0] came_q, went_q;        // the traverser's, so many in all
   wire [NUMBER_BITS-1:0] traverser_waiting = came_q - went_q;
@@ -104,10 +104,10 @@ module rp_memory_port #(
   wire [TRAVERSER_WIDTH-1:0] traverser_oldest;
   wire [NUMBER_BITS-1:0] before_oldest;
 
-  // ---- Whose turn it is. Where nothing waits, what comes is served in the same cycle.
+  // ---- The next to be served. Where nothing waits, what comes is served in the same cycle.
   reg second_q;                                // the oldest of the traverser's has had its first part
   wire nothing_waits = !device_waits && !traverser_waits;
-  wire oldest_turn = traverser_waits && (!device_waits || before_oldest != went_q);   // of who waits, the traverser's
+  wire oldest_turn = traverser_waits && (!device_waits || before_oldest != went_q);   // else the device's
   wire traverser_turn = nothing_waits ? !device_request_valid_i : oldest_turn;
   wire write, second, device_write, traverser_write;
   wire [31:0] device_address, traverser_address;
@@ -127,7 +127,7 @@ module rp_memory_port #(
   wire port_free = wait_q == {WAIT_BITS{1'b0}} && (!memory_request_valid_o || memory_request_ready_i);
   wire lines_left = lines_q != LINES[LINES_BITS-1:0];
   wire another = second && !second_q;
-  // Who waits is served whatever comes; and what comes is known late, a unit's request latest.
+  // What waits is served whatever comes; and what comes is known late, a unit's request latest.
   wire device_goes = port_free && !oldest_turn && (device_write_waits || lines_left);
   wire traverser_goes = port_free && oldest_turn && (traverser_write || lines_left);
   wire device_passes = port_free && nothing_waits && (device_request_write_i || lines_left);
@@ -195,7 +195,7 @@ module rp_memory_port #(
   wire written = memory_request_valid_o && memory_request_ready_i && memory_request_write_o
                && !memory_request_traverser_o;
 
-  // ---- Lines that come back: two places, one is filled while the other one leaves; and whose they are.
+  // ---- Lines that come back: two places, one is filled while the other one leaves; and their requesters.
   reg [WAIT_BITS-1:0] beat_wait_q;             // cycles until the next beat may be handed on
   reg [1:0] beat_q;                            // its number
   wire beat_waits;

@@ -81,7 +81,7 @@ module rp_ray_pool #(
   assign held_up_o = full;
   wire take = export_valid_i && export_ready_o;
   wire last = take && export_last_i;
-  // Room that is made in this cycle is taken by nobody else.
+  // Room that is made in this cycle cannot be taken by another ray.
   wire turn = export_valid_i && !open_q && (!full || free_valid_i);
 
   // The flags and the weight are all in the last beat, of the bits from 256 on.

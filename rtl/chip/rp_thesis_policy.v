@@ -24,7 +24,7 @@ module rp_thesis_policy #(
   input  wire                   more_to_come_i,    // rays in the pool or in the units
   input  wire                   ahead_i,           // the unit still runs a kernel
   output reg  [1:0]             kind_o,            // 0: halt, 1: cast eye rays, 2: secondary, 3: shade
-  output wire [THREAD_BITS-1:0] threads_o          // 0 of eye rays, whose tile decides
+  output wire [THREAD_BITS-1:0] threads_o          // 0 of eye rays: their tile decides
 );
   `include "rp_policy_functions.vh"
   localparam integer SCALE = larger(1, CONTENTS / 64);

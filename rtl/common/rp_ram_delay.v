@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// What stood at the input CYCLES cycles before, as steady_delay says it, but kept in a RAM. CYCLES must be 2 or more.
+// What stood at the input CYCLES cycles before, as in steady_delay, but kept in a RAM. CYCLES must be 2 or more.
 `default_nettype none
 module rp_ram_delay #(
   parameter integer WIDTH = 32,

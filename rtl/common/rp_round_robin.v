@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Chooses one of the requesters in rotation: the search starts behind the one that was chosen last, so that whoever
-// keeps asking is chosen before anybody else is chosen twice.
+// Chooses one of the requesters in rotation: the search starts behind the one that was chosen last, so that a requester
+// that keeps asking is chosen before any other is chosen twice.
 `default_nettype none
 module rp_round_robin #(
   parameter integer COUNT = 4
@@ -15,7 +15,7 @@ module rp_round_robin #(
   localparam [COUNT-1:0] ONE = 1;
   reg [COUNT-1:0] behind_q;  // the numbers behind the one chosen last
   wire [COUNT-1:0] behind = request_i & behind_q;
-  // The first of those behind and the first of all are looked for side by side: who asks may be known late.
+  // The first of those behind and the first of all are looked for side by side: requests may be known late.
   wire [COUNT-1:0] first_behind = behind & (~behind + ONE), first = request_i & (~request_i + ONE);
   assign grant_o = |behind ? first_behind : first;
 

@@ -2,10 +2,9 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Valid, warp and ready of an ALU with LATENCY cycles between tasks and DEPTH stages; it has no data path.
 // A task that arrives in cycle t (task_valid_i) is done in cycle t + DEPTH (done_valid_o, done_warp_o).
-// stage_valid_o[k] says that the task which arrived k cycles ago is in its stage k now, so the data path's
-// register behind stage k loads when stage_valid_o[k] is high, and the last one, behind stage DEPTH-1, is the
-// done data. ready_o says that a task granted in this cycle, which arrives in the next one, is taken; the
-// dispatcher must not grant otherwise.
+// stage_valid_o[k] is high when the task which arrived k cycles ago is in its stage k now, so the data path's register
+// behind stage k loads then, and the last one, behind stage DEPTH-1, is the done data. With ready_o a task granted in
+// this cycle, which arrives in the next one, is taken; the dispatcher must not grant otherwise.
 `default_nettype none
 module rp_alu_pipeline #(
   parameter integer WARP_BITS = 3,
@@ -27,7 +26,7 @@ module rp_alu_pipeline #(
     end
   endgenerate
 
-  // Bit k-1 belongs to stage k; the highest one is the done stage.
+  // Bit k-1 is that of stage k; the highest one is the done stage.
   reg [DEPTH-1:0] valid_q;
   reg [DEPTH*WARP_BITS-1:0] warp_q;
 

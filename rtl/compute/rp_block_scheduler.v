@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Gives each launch to one of 2 to 4 units that can take it: to one that runs no kernel, if there is
-// one, otherwise to one whose waiting place is free; in rotation among these. launch_ready_o and
-// launch_unit_o do not depend on launch_valid_i.
+// one, otherwise to one with a free waiting place; in rotation among these. launch_ready_o and launch_unit_o do not
+// depend on launch_valid_i.
 `default_nettype none
 module rp_block_scheduler #(
   parameter integer UNITS = 4

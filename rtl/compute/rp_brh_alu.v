@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Compares into predicates, predicate logic, and the decision of control instructions: taken, in every lane of
-// done_predicate_o. SUBNORMALS 0: IEEE, 1: subnormal operands count as zero, 2: the same, and done_subnormal_o says
-// that a task has met one.
+// done_predicate_o. SUBNORMALS 0: IEEE, 1: subnormal operands count as zero, 2: the same, and done_subnormal_o flags a
+// task that has met one.
 `default_nettype none
 module rp_brh_alu #(
   parameter integer WARPS = 8,
@@ -11,7 +11,7 @@ module rp_brh_alu #(
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 2,
   parameter integer SUBNORMALS = 0,
-  parameter integer SIGNIFICAND = 24,   // of a float, whose bits below are not looked at
+  parameter integer SIGNIFICAND = 24,   // of a float: bits below are not looked at
   parameter integer WITHOUT = 0   // instructions that it lacks: a bit for each operation number
 ) (
   output wire                   done_subnormal_o,

@@ -268,7 +268,7 @@ module rp_compute_unit #(
     end
   endgenerate
 
-  // The older kernel's warps go first, so that it ends and the next one can begin. Two cycles late: who is granted then
+  // The older kernel's warps go first, so that it ends and the next one can begin. Two cycles late: a warp granted then
   // has been in that kernel for at least as long.
   always @(posedge clk_i) begin
     older_q <= KERNEL_OVERLAP != 0 && rst_ni ? older : {WARPS{1'b0}};

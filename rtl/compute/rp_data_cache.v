@@ -89,7 +89,7 @@ module rp_data_cache #(
   assign load_ready_o = !refill_q && !(access_i && access_store_i);
   assign store_ready_o = !refill_q && !response_valid_i;
 
-  // Lookup: tags and data are read; the valid bits are taken along, so that both belong to the same cycle.
+  // Lookup: tags and data are read; the valid bits are taken along, so that both are of the same cycle.
   reg [SETS-1:0] valid_0_q;
   reg [SETS-1:0] valid_1_q;
   reg [SETS-1:0] older_q;   // the way of a set that was used less recently

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Flt ALU: fadd fsub fmul fmin fmax f2i i2f in three stages, or with FMA these and ffma in five, further ones as delay.
 // docs/use/arithmetic.md has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed, 2: the same, and
-// done_subnormal_o says that a task has met one. SIGNIFICAND: bits of a float's significand, with its leading one.
+// done_subnormal_o flags a task that has met one. SIGNIFICAND: bits of a float's significand, with its leading one.
 // task_operand_c_i is register rc, the third operand of ffma. Lanes outside the mask keep what they held. Only the unit
 // an operation needs is clocked.
 `default_nettype none

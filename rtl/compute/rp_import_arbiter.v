@@ -26,7 +26,7 @@ module rp_import_arbiter #(
   localparam integer PLACES = 3;
   localparam integer LAST_BEAT = (INTERSECTION_WORDS + 3) / 4 - 1;
 
-  // The units whose packages are to come, in order; no request leaves while the queue is full.
+  // The units that still await packages, in order; no request leaves while the queue is full.
   wire expected;
   wire [1:0] receiver, count;
   wire open = count != PLACES[1:0];

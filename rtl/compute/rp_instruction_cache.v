@@ -3,10 +3,10 @@
 // The L1 instruction cache: 2-way, 64-byte lines of 8 instructions, least recently used, one
 // lookup a cycle, one fetch at a time.
 // A lookup in cycle c is answered in c+1 with hit_o and the instruction, or with miss_o. A miss begins a fetch when
-// none is under way; lookups that hit go on meanwhile. refill_done_o: every warp whose miss_o came in an earlier cycle
-// must look up again; after a miss_o in cycle c a refill_done_o always comes in a later cycle. The warp whose miss
-// began the fetch is to look up before all others (first_o): warps whose lines share a set could else take a line from
-// each other for ever before anyone has used it. Must be given: the beats of a line in order.
+// none is under way; lookups that hit go on meanwhile. refill_done_o: every warp that has missed in an earlier cycle
+// must look up again; after a miss_o in cycle c a refill_done_o always comes in a later cycle. The warp that began the
+// fetch is to look up before all others (first_o): else warps with lines in one set could take a line from each other
+// for ever before any has used it. Must be given: the beats of a line in order.
 `default_nettype none
 module rp_instruction_cache #(
 `include "rp_instruction_cache_parameters.vh"
@@ -48,7 +48,7 @@ module rp_instruction_cache #(
 
   wire unused = &{1'b0, lookup_pc_i};   // bits that no PC has
 
-  // Lookup. The valid bits are taken along, so that they and the tags belong to the same cycle.
+  // Lookup. The valid bits are taken along, so that they and the tags are of the same cycle.
   wire [SET_BITS-1:0] lookup_set = lookup_pc_i[3 +: SET_BITS];
   reg                 result_q;
   reg [WARP_BITS-1:0] warp_q;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Takes launches: one may wait while a kernel runs. Starts the warps, notices the end of the kernel.
-// With OVERLAP a launch begins as soon as no more than one kernel runs, whose warps have all started then. Each of its
-// warps starts when it has ended in the kernel before. So two kernels may run; the older one ends first.
+// Takes launches: one may wait while a kernel runs. Starts the warps, detects the end of the kernel.
+// With OVERLAP a launch begins as soon as no more than one kernel runs and all warps of that one have started. Each of
+// its warps starts when it has ended in the kernel before. So two kernels may run; the older one ends first.
 `default_nettype none
 module rp_launcher #(
   parameter integer WARPS = 8,

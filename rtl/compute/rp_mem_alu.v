@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The memory ALU: loads and stores of a warp's lanes through the data cache, one quadword (16 bytes) a cycle.
 // docs/machine/memory.md gives it cycle by cycle. A task that arrives in cycle t computes its addresses in t, looks
-// quadword k up in t+1+k and accesses it in t+2+k; with n quadwords that hit, it is done in t+2+n. Lanes whose line is
-// absent are left over: the warp is parked and gives way to others, and passes again over the lanes concerned when the
-// line has come. Promises: an instruction with an illegal address has no effect but the fault; every task ends,
-// whatever other warps do, if the memory answers. Must be given: one task at a time of a warp; invalidate_i only while
-// there is no task.
+// quadword k up in t+1+k and accesses it in t+2+k; with n quadwords that hit, it is done in t+2+n. Lanes that miss are
+// left over: the warp is parked and gives way to others, and passes again over the lanes concerned when the line has
+// come. Promises: an instruction with an illegal address has no effect but the fault; every task ends, whatever other
+// warps do, if the memory answers. Must be given: one task at a time of a warp; invalidate_i only while there is no
+// task.
 `default_nettype none
 module rp_mem_alu #(
 `include "rp_data_cache_parameters.vh"
@@ -56,8 +56,8 @@ module rp_mem_alu #(
   wire unused = &{1'b0, response_id_i};
   assign done_predicate_o = NONE;
 
-  // ---- Arrival: addresses. Word addresses are enough from here on, with one bit
-  // that says that a byte address was none.
+  // ---- Arrival: addresses. Word addresses are enough from here on, with one bit that flags a byte address that was
+  // none.
   wire arrive_store = task_operation_i == ISA_MEM_ST;
   reg [LANES*30-1:0] arrive_words;
   reg                arrive_misaligned;
@@ -114,8 +114,8 @@ module rp_mem_alu #(
     .write_data_i({left_q, refused_q, result_q})
   );
 
-  // ---- Lookup stage: the pass whose lanes are looked up. The lowest pending lane leads; all
-  // pending lanes of its quadword go along.
+  // ---- Lookup stage: the pass that is looked up. The lowest pending lane leads; all pending lanes of its quadword go
+  // along.
   reg                 pass_q;
   reg                 pass_first_q;       // no lookup of this pass yet
   reg [WARP_BITS-1:0] pass_warp_q;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Joins the instruction side (reads, id 16) and the data side (reads with ids 0 .. 15, writes) to the unit's memory
-// port, and tells responses apart by their id. One request a cycle; the instruction side goes first, and as it has one
-// fetch at a time the data side cannot starve. Promises: the port's outputs are registers and stay until taken;
-// requests leave in the order in which they were taken.
+// port, and routes responses by their id. One request a cycle; the instruction side goes first, and as it has one fetch
+// at a time the data side cannot starve. Promises: the port's outputs are registers and stay until taken; requests
+// leave in the order in which they were taken.
 `default_nettype none
 module rp_memory_arbiter (
   input  wire         clk_i,

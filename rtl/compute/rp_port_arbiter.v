@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Shares a port among 2 to 4 requesters, in rotation, a package of one or more transfers at a time. Adds no cycle.
-// Promises: who is chosen keeps the port until the last transfer of its package, also while it has nothing to send, so
-// that packages are never mixed and what is offered stays stable; whoever keeps asking is served before anybody else is
-// served twice. Valid does not depend on ready.
+// Promises: the chosen requester keeps the port until the last transfer of its package, also while it has nothing to
+// send, so that packages are never mixed and what is offered stays stable; a requester that keeps asking is served
+// before any other is served twice. Valid does not depend on ready.
 // Must be given: valid_i, data_i and last_i from registers; each stays as it is while it waits.
 `default_nettype none
 module rp_port_arbiter #(
@@ -30,7 +30,7 @@ module rp_port_arbiter #(
   endgenerate
 
   reg locked_q;              // a package is under way or offered
-  reg [COUNT-1:0] choice_q;  // whose; one-hot
+  reg [COUNT-1:0] choice_q;  // the requester that has the port; one-hot
   wire [COUNT-1:0] next;
   wire [COUNT-1:0] grant = locked_q ? choice_q : next;
 

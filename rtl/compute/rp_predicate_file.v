@@ -15,7 +15,7 @@ module rp_predicate_file #(
   input  wire [3:0]       guard_i,
   input  wire [3:0]       x_index_i,
   input  wire [3:0]       b_index_i,
-  output reg  [LANES-1:0] mask_o,        // launched lanes whose guard holds
+  output reg  [LANES-1:0] mask_o,        // launched lanes with a guard that holds
   output reg  [LANES-1:0] x_o,
   output reg  [LANES-1:0] b_o,
   input  wire             write_i,

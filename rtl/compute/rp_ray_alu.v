@@ -199,7 +199,7 @@ module rp_ray_alu #(
   endgenerate
 
   // ---- Swaps. One a cycle, of the lowest warp that can; the done port goes to an access first.
-  reg [WARPS-1:0] parked_in_q, parked_out_q, parked_empty_q;   // rin; rout or rfb; whose mask is empty
+  reg [WARPS-1:0] parked_in_q, parked_out_q, parked_empty_q;   // rin; rout or rfb; of these with an empty mask
   wire [WARPS-1:0] full, busy;
   wire [WARPS-1:0] can = (parked_in_q & full) | (parked_out_q & ~busy);
   assign import_wait_o = parked_in_q & ~full;

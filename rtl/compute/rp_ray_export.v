@@ -61,7 +61,7 @@ module rp_ray_export #(
   // places; slot_q is that of the next one.
   reg [WARPS-1:0] slot_q, busy_q;
   reg [PLACES*WARP_BITS-1:0] order_q;          // warps in the order of their pushes
-  reg [WARP_BITS:0] first_q, end_q;            // with a bit more than a place, to tell full from empty
+  reg [WARP_BITS:0] first_q, end_q;            // a bit wider than a place, so that full and empty differ
   wire [WARP_BITS-1:0] first_warp = order_q[first_q[WARP_BITS-1:0]*WARP_BITS +: WARP_BITS];
   wire take_first, load;
   wire next_frame;

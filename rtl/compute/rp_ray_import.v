@@ -4,7 +4,7 @@
 // slices. Knows which input slices hold all their packages: full_o.
 // Promises: at most two packages are requested and not yet received; one is only requested while its warp's input slice
 // is not full; a beat is written in the cycle after its arrival, or with WIDE together with the next one of its
-// package: each write takes the memory's port from whoever else wants it.
+// package: each write has precedence at the memory's port.
 // Must be given: for each request taken, in order, as many beats as INTERSECTION_WORDS need (words 4b ..
 // 4b+3), any time after; the memory's port whenever write_o is high; no start while active_o is high; take_i only for a
 // full slice.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Slw ALU: fdiv fsqrt frsqrt frcp, a new task in any of its stages; further stages as delay. docs/use/arithmetic.md
-// has the rules. SUBNORMALS 0: IEEE, 1: flushed, 2: the same, and done_subnormal_o says that a task has met one.
+// has the rules. SUBNORMALS 0: IEEE, 1: flushed, 2: the same, and done_subnormal_o flags a task that has met one.
 // SIGNIFICAND: bits of a float's significand, with its leading one. SLOW_UNIT 0: correctly rounded, 1: table and two
 // Newton steps, both in 11 stages; 2: one step, 8; 3: none, 6. Lanes outside the mask keep what they held and are not
 // clocked. With SLOW_LANES below LANES there are so many lanes only. They take a task group after group, the lowest

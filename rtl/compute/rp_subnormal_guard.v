@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Watches the float tasks of an ALU: says, when one is done, whether an operand that it read, or a result before it was
+// Watches the float tasks of an ALU: flags, when one is done, that an operand that it read, or a result before it was
 // flushed, was a subnormal number in any lane of its mask.
 // enter_i: lanes that enter in this cycle, and have their operands at a_i, b_i and c_i; reads_i: which of these {c, b,
 // a} are floats that the operation reads. result_i: in stage RESULT_STAGE is a task with a result that is tiny.

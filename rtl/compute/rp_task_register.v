@@ -13,7 +13,7 @@ module rp_task_register #(
   input  wire                      clk_i,
   input  wire                      rst_ni,
   input  wire                      grant_i,       // in the next cycle there is a task
-  input  wire [WARP_BITS-1:0]      warp_i,        // whose
+  input  wire [WARP_BITS-1:0]      warp_i,        // the task's
   // warps
   input  wire [WARPS*64-1:0]       instruction_i,
   input  wire [WARPS*LANES-1:0]    mask_i,

@@ -91,8 +91,8 @@ module rp_warp #(
   // What has met a subnormal number is followed by no other instruction, so that its PC stays.
   wire subnormal = |(done_i & done_subnormal_i);
 
-  // Control instructions: the branch ALU says in every lane's predicate bit whether the jump is taken. Only its done
-  // counts, so that the way to the PC stack leads through no other ALU's.
+  // Control instructions: the branch ALU gives in every lane's predicate bit whether the jump is taken. Only its done
+  // counts, so that the path to the PC stack leads through no other ALU's.
   reg control, taken;
   always @* begin
     control = 1'b0;

@@ -141,7 +141,7 @@
     end
   endfunction
 
-  // has a register in rb, unless bit 37 says that b is the immediate
+  // has a register in rb, unless bit 37 makes b the immediate
   function isa_names_b;
     /* verilator lint_off UNUSEDSIGNAL */
     input [63:0] encoding;

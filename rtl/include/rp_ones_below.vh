@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Included in a module: bit i says that all bits of x below i are ones, so that x + 1
-// is x ^ ones_below(x), and x + c for a bit c that comes late is x ^ (ones_below(x) & {64{c}}). In
-// log2(64) steps; what is not used of it costs nothing. Where it is called under no condition it needs no variables of
-// the instance in Verilator, so that instances share their code (sim/rtl/shared_modules.vlt).
+// Included in a module: bit i is set if all bits of x below i are ones, so that x + 1 is x ^ ones_below(x), and x + c
+// for a bit c that comes late is x ^ (ones_below(x) & {64{c}}). In log2(64) steps; what is not used of it costs
+// nothing. Where it is called under no condition it needs no variables of the instance in Verilator, so that instances
+// share their code (sim/rtl/shared_modules.vlt).
 function [63:0] ones_below(input [62:0] x);
   reg [63:0] ones;
   integer step;

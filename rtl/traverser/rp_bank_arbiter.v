@@ -2,11 +2,12 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Which lines the banks of a cache look up: of each lane two lines are wanted, of which one can be taken, the first
 // rather. Each bank chooses a lane, in rotation among those that want a line of it, and the first of its wants that go
-// to the bank. Then each lane takes the first of its wants whose line a bank that is ready has chosen, for whomever.
+// to the bank. Then each lane takes the first of its wants with a line that a ready bank has chosen, for whichever
+// lane.
 // Promises: a bank looks up one line, for all lanes that take it; of a lane one want is taken at most; one that stays
 // the lane's first is taken when its bank has been ready LANES times, if the lane is not silent meanwhile.
 // valid_o of a bank does not depend on its own ready_i, but on those of others: their lanes then take no want of it. A
-// bank that is ready may have chosen for nobody, if its lane takes another want.
+// ready bank looks up nothing if the lane that it has chosen takes another want and no lane takes its line.
 `default_nettype none
 module rp_bank_arbiter #(
   parameter integer LANES = 8,
@@ -28,7 +29,7 @@ module rp_bank_arbiter #(
   output wire [BANKS-1:0]                 valid_o,
   input  wire [BANKS-1:0]                 ready_i,
   output reg  [BANKS*BANK_LINE_BITS-1:0]  line_o,         // without the bits that choose the bank
-  output wire [BANKS*LANES-1:0]           lanes_o,        // none: for nobody
+  output wire [BANKS*LANES-1:0]           lanes_o,        // none: a prefetch
   output wire [BANKS*LANES*SLOT_BITS-1:0] slots_o
 );
   localparam integer WANTS = 2 * LANES;
@@ -38,7 +39,7 @@ module rp_bank_arbiter #(
 
   // ---- The choice of the banks
 
-  // As in rp_round_robin.v, but who is ahead of whom is known of registers alone.
+  // As in rp_round_robin.v, but the order of the lanes is known from registers alone.
   wire [BANKS*WANTS-1:0] goes;       // [bank][want]
   wire [BANKS*LANES-1:0] grant;      // [bank][lane]
   generate
@@ -79,7 +80,7 @@ module rp_bank_arbiter #(
             want_line_i[(goes[bank*WANTS+2*lane] ? 2*lane+1 : 2*lane+2)*LINE_BITS-1 -: BANK_LINE_BITS];
   end
 
-  // ---- Whose line is chosen
+  // ---- Which wants are chosen
 
   // If the bank of a want chooses a lane, does it choose the want's line? Lines are compared with each other while the
   // banks choose, not with what they have chosen.

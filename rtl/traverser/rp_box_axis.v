@@ -81,7 +81,7 @@ module rp_box_axis #(
     end
 
   // ---- 2: the distance between the origins, rounded down: the lesser one is taken to two places more than the greater
-  // one has, and rest says that it has any behind them. The last places complete a difference, if nothing was lost.
+  // one has, and rest is set if it has any behind them. The last places complete a difference, if nothing was lost.
   wire [4:0] align = (apart_1 > 8'd31) ? 5'd31 : apart_1[4:0];
   wire [56:0] part = {lesser_1, 33'd0} >> align;
   wire rest = |part[30:0];
@@ -174,7 +174,7 @@ module rp_box_axis #(
   // ---- 6: the terms at the same places, and their sum
   wire signed [SUM_BITS-1:0] near_base = near_base_5 >>> base_drop_5;
   wire signed [SUM_BITS-1:0] far_base = far_base_5 >>> base_drop_5;
-  reg [9:0] exponent_6;                          // of a key whose leading bit is the sum's first
+  reg [9:0] exponent_6;                          // of a key that begins with the sum's first bit
   always @(posedge clk_i) if (move_i) exponent_6 <= unit_5[9:0] + (10'd511 + SUM_BITS[9:0]);
 
   // ---- 7: keys. The leading bit is moved to the front, and BITS are kept.

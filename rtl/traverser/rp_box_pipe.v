@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Which of the four boxes of a node of 64 bytes a ray meets, in narrow integers that are rounded so that no box is
 // missed; docs/machine/box-test.md proves it. A node a cycle, its result eight moves later.
-// Promises: it moves unless a result is there that nobody takes; no box that is not there is met; no output but ready_o
+// Promises: it moves unless a result is there and is not taken; no box that is not there is met; no output but ready_o
 // depends on an input of the same cycle.
-// Must be given: floats that are finite; lower planes not above upper ones; reciprocals whose first bit is 1.
+// Must be given: floats that are finite; lower planes not above upper ones; reciprocals that begin with a 1.
 `default_nettype none
 module rp_box_pipe #(
   parameter integer BITS = 12,                   // of a reciprocal and of a key's significand

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// What a lane knows of its rays' hits: each ray's limit, and its best hit so far. The triangle pipe is told both by
+// What a lane knows of its rays' hits: each ray's limit, and its best hit so far. The triangle pipe is given both by
 // slot, a cycle after it asks; its results are taken into account at once. When the last triangle of a leaf has its
 // result, the ray goes on, with the time of its best hit as a key.
-// Must be given: a ray enters before it is asked for; results of the pipe four cycles after it was told the limit, and
-// one after it was told the best hit.
+// Must be given: a ray enters before it is asked for; results of the pipe four cycles after it was given the limit, and
+// one after it was given the best hit.
 `default_nettype none
 module rp_lane_hits #(
   parameter integer SLOTS = 24,
@@ -20,7 +20,7 @@ module rp_lane_hits #(
   input  wire                 ray_shadow_i,
   input  wire [31:0]          ray_limit_i,
   input  wire [8:0]           ray_scale_i,
-  // the triangle pipe asks, and is told in the next cycle
+  // the triangle pipe asks, and is answered in the next cycle
   input  wire [SLOT_BITS-1:0] limit_slot_i,
   output wire [31:0]          limit_o,
   output wire [8:0]           scale_o,
@@ -40,11 +40,11 @@ module rp_lane_hits #(
   output wire                 leaf_valid_o,
   output wire [KEY_BITS-1:0]  leaf_limit_o,
   output wire                 leaf_over_o,       // a shadow ray has found a blocker
-  // a box test asks for the best hit's key, and is told in the next cycle
+  // a box test asks for the best hit's key, and is answered in the next cycle
   input  wire [SLOT_BITS-1:0] key_slot_i,
   output wire                 key_valid_o,       // there is a hit
   output wire [KEY_BITS-1:0]  key_o,
-  // so does who takes a ray that is done, for the hit
+  // so does the block that takes a finished ray, for the hit
   input  wire [SLOT_BITS-1:0] done_slot_i,
   output wire                 done_hit_o,
   output wire [30:0]          done_t_o,
@@ -74,7 +74,7 @@ module rp_lane_hits #(
   );
 
   // ---- The best hit: what came in the cycle in which it was asked for is not in the RAM's word, nor what comes in
-  // that in which it is told
+  // that in which it is given
 
   reg written_q;
   reg [SLOT_BITS-1:0] written_slot_q, best_slot_q;

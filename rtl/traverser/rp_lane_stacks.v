@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The stacks of a lane of the traverser: of each slot's ray the youngest entries in RAMs of one read and one write a
-// cycle, and how many blocks of four older ones are in the memory. A visit's result says how the ray goes on: with the
-// nearest child, once its stack has room for three more; else with the youngest entry that does not lie behind the best
-// hit. One entry is taken off in a cycle.
-// Promises: a ray gets the entries that were put on its stack, youngest first, without those whose key is above the
+// cycle, and how many blocks of four older ones are in the memory. A visit's result decides how the ray goes on: with
+// the nearest child, once its stack has room for three more; else with the youngest entry that does not lie behind the
+// best hit. One entry is taken off in a cycle.
+// Promises: a ray gets the entries that were put on its stack, youngest first, without those with a key above the
 // limit; each result is answered once, by node_goes_on_o, next or done, whatever keys and limits are; a request stays
 // as it is until it is taken, and the next one that reads comes after its fill; a fill is taken at once, and has been
 // written when fill_waits_o is low. node_goes_on_o, done and ray_ready_o depend on inputs of the same cycle, no other
 // output does.
 // Must be given: the slot of a result a cycle ahead, of a ray that has begun or gone on before; one result each time;
 // no node's test begins from a fill until fill_waits_o is low, so that there is a cycle for it; a fill for each request
-// that reads, after that was taken; a ray that begins in a slot whose last one is done; fewer than 2**BLOCK_BITS blocks
-// of a ray.
+// that reads, after that was taken; a ray that begins in a slot only after the slot's last one is done; fewer than
+// 2**BLOCK_BITS blocks of a ray.
 `default_nettype none
 module rp_lane_stacks #(
   parameter integer SLOTS = 24,
@@ -27,7 +27,7 @@ module rp_lane_stacks #(
   input  wire                      rst_ni,
   // a ray begins: its stack is empty
   input  wire                      ray_valid_i,
-  output wire                      ray_ready_o,         // neither next nor done is anybody's in this cycle
+  output wire                      ray_ready_o,         // there is neither next nor done in this cycle
   input  wire [SLOT_BITS-1:0]      ray_slot_i,
   // a node's result
   input  wire [SLOT_BITS-1:0]      node_slot_i,         // of the result that may come in the next cycle
@@ -86,7 +86,7 @@ module rp_lane_stacks #(
   reg [SLOTS*BLOCK_BITS-1:0] blocks_q;           // in the memory
   reg [SLOTS*ROW_BITS-1:0] base_q;               // row of the oldest entries in the RAM
   localparam [1:0] NOTHING = 2'd0, ENTRY = 2'd1, SPILL = 2'd2;
-  reg [1:0] read_q;                              // what the RAM has read in the cycle before, and for whom
+  reg [1:0] read_q;                              // what the RAM has read in the cycle before, and for which slot
   reg [SLOT_BITS-1:0] read_slot_q;
   reg [1:0] read_place_q;
   reg read_leaf_q, read_fresh_q;                 // after a leaf; it came in the cycle before
@@ -110,7 +110,7 @@ module rp_lane_stacks #(
     end
   endfunction
 
-  // ---- Whose results come, a cycle ahead: nothing changes their stacks meanwhile
+  // ---- The slots of the next results, a cycle ahead: nothing changes their stacks meanwhile
 
   reg [SLOT_BITS-1:0] node_slot_q, leaf_slot_q;
   reg [HERE_BITS-1:0] node_here_q, leaf_here_q;
@@ -150,7 +150,7 @@ module rp_lane_stacks #(
               (others == 3'd3 && node_here_q >= MOST[HERE_BITS-1:0] - TWO);
   assign node_goes_on_o = meets && !full;
 
-  // ---- Who waits: nobody is in two queues, or twice in one
+  // ---- Slots that wait: none is in two queues, or twice in one
 
   wire [1:0] pop_there, pop_passes, pop_ready;   // of nodes, of leaves
   wire [WANT_BITS-1:0] node_want, leaf_want;
@@ -187,7 +187,8 @@ module rp_lane_stacks #(
     .ready_i(spill_ready),
     .data_o({spill_slot, spill_address})
   );
-  // Who comes to want a block is known late: if it cannot be asked for at once, it is put into the queue a cycle later.
+  // The slot that comes to want a block is known late: if it cannot be asked for at once, it is put into the queue a
+  // cycle later.
   wire fetch_comes, fetch_waits, fetch_ready, unused;
   wire fetch_begins = fetch_ready && (fetch_waits || fetch_comes);
   reg fetch_late_q;
@@ -208,7 +209,7 @@ module rp_lane_stacks #(
     .data_o(fetch_want_waits)
   );
 
-  // What is kept of who waits: the limit, or the nearest child; read with the entry.
+  // What is kept of a slot that waits: the limit, or the nearest child; read with the entry.
   wire keep_reads;
   wire [SLOT_BITS-1:0] keep_slot;
   wire [KEPT_BITS-1:0] node_keeps = meets ? {{KEPT_BITS-REFERENCE_BITS{1'b0}}, node_nearest_i}
@@ -250,8 +251,9 @@ module rp_lane_stacks #(
   assign next_slot_o = read_slot_q;
   assign next_reference_o = (read_q == SPILL) ? nearest : entry[REFERENCE_BITS-1:0];
 
-  // ---- Who is next, unless the same ray is: a block that has come, a stack that spills, who wants an entry. Whether a
-  // request is taken is known last: so it chooses between what is with a spill and what is without.
+  // ---- The next slot, unless the same ray goes on: of a block that has come, of a stack that spills, or one that
+  // wants an entry. Whether a request is taken is known last: so it chooses between what is with a spill and what is
+  // without.
 
   wire request_free = !request_valid_o || request_ready_i;
   wire spill_wants = !retry_q && spill_there;
@@ -393,8 +395,8 @@ module rp_lane_stacks #(
     end
   endgenerate
 
-  // ---- Counts: of what was read in the cycle before. Who looks at the slot before has read_here. A ray that has not
-  // begun yet has an empty stack too.
+  // ---- Counts: of what was read in the cycle before. For the slot of the cycle before use read_here. A ray that has
+  // not begun yet has an empty stack too.
 
   wire [HERE_BITS-1:0] spilled_here = read_here - (BLOCK - ONE);
   wire [BLOCK_BITS-1:0] spilled_blocks = blocks_q[read_slot_q*BLOCK_BITS +: BLOCK_BITS] + 1'b1;

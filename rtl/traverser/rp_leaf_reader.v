@@ -3,7 +3,7 @@
 // The leaves that a lane's rays come to: which of their lines are wanted from the cache, and the triangles in them, one
 // in a cycle. A leaf's triangles are 11 words each, one behind the other, so some lie in two lines: the next line is
 // wanted when one has come, and of a line that does not end with a triangle the last words are kept by slot. Where a
-// line is missed, those of the leaf behind it are looked up at once, for nobody.
+// line is missed, those of the leaf behind it are prefetched: looked up at once, with no ray waiting.
 // Promises: of each leaf that a ray comes to all triangles are begun, in their order; lines leave in the order in which
 // they came. No output depends on an input of the same cycle.
 // Must be given: a slot that starts a leaf has begun all triangles of the one before; an offer that is taken is valid,
@@ -22,7 +22,7 @@ module rp_leaf_reader #(
   input  wire [1:0]             start_i,
   input  wire [2*SLOT_BITS-1:0] start_slot_i,
   input  wire [2*31-1:0]        start_leaf_i,
-  // two lines to look up, of which one can be taken, the first rather; either may be for nobody
+  // two lines to look up, of which one can be taken, the first rather; either may be a prefetch
   output wire [1:0]             want_o,
   output wire [1:0]             want_nobody_o,
   output wire [2*LINE_BITS-1:0] want_line_o,
@@ -33,7 +33,7 @@ module rp_leaf_reader #(
   input  wire                   given_i,
   input  wire [SLOT_BITS-1:0]   given_slot_i,
   input  wire [511:0]           given_data_i,
-  // the ray whose triangles come from the next cycle on
+  // the ray that gets the triangles from the next cycle on
   output wire                   load_o,
   output wire [SLOT_BITS-1:0]   load_slot_o,
   // a triangle
@@ -57,7 +57,7 @@ module rp_leaf_reader #(
   localparam [31:0] MOST = LINES;
   localparam [HELD_BITS-1:0] ALL_LINES = MOST[HELD_BITS-1:0];
 
-  // ---- Who wants a line: rays that come from a node, from the stack, and those that go on in a leaf
+  // ---- Rays that want a line: those that come from a node, from the stack, and those that go on in a leaf
 
   wire further;
   wire [QUEUED_BITS-1:0] further_data;
@@ -69,7 +69,7 @@ module rp_leaf_reader #(
       wire push;
       wire [QUEUED_BITS-1:0] data;
       if (g < 2) begin : gen_start
-        // Who starts is known late in a cycle: the leaf's first word is found in the next one.
+        // The ray that starts is known late in a cycle: the leaf's first word is found in the next one.
         reg start_q;
         reg [SLOT_BITS-1:0] start_slot_q;
         reg [1:0] more_q;
@@ -80,7 +80,7 @@ module rp_leaf_reader #(
           {more_q, start_place_q} <= start_leaf_i[g*31+:31];
         end
         wire [32:0] word = {1'b0, start_place_q, 3'd0} + {3'd0, start_place_q, 1'b0} + {4'd0, start_place_q};
-        // A place whose line has no number has the last one, so that it is not taken for another.
+        // A place beyond the last line has that line's number, so that it is not taken for another.
         wire [LINE_BITS-1:0] start_line = word[4+:LINE_BITS] | {LINE_BITS{|word[32:LINE_BITS+4]}};
         assign push = start_q;
         assign data = {start_slot_q, start_line, 1'b0, word[3:0], {1'b0, more_q} + 3'd1, start_place_q};
@@ -100,7 +100,7 @@ module rp_leaf_reader #(
     end
   endgenerate
 
-  reg [1:0] turn_q;                              // whose head is offered first
+  reg [1:0] turn_q;                              // the queue that is offered first
   reg [2:0] next;
   always @*
     case (turn_q)
@@ -116,7 +116,7 @@ module rp_leaf_reader #(
   reg [1:0] ahead_step_q;
   wire ahead_last = ahead_step_q + 2'd1 == ahead_count;
 
-  localparam integer OFFER_BITS = QUEUED_BITS + 1;   // for nobody
+  localparam integer OFFER_BITS = QUEUED_BITS + 1;   // one more bit: a prefetch
   wire [1:0] offered;
   wire [2*OFFER_BITS-1:0] offers;
   wire offers_ready, was_taken, was_for_nobody;

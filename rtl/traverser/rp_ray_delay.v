@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // What is known of a ray, in a register for each three cycles of its way: rays are three cycles apart or more.
-// move_i: bit k says that the ray leaves place k, so that its data goes to the next one; bit 0 takes data_i.
+// move_i: bit k is set when the ray leaves place k, so that its data goes to the next one; bit 0 takes data_i.
 `default_nettype none
 module rp_ray_delay #(
   parameter integer WIDTH = 32,

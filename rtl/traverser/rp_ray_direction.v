@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // What is computed of a ray's direction: for boxes reciprocals of BITS bits, rounded down, and for triangles the
 // direction scaled by a power of two, its inverses, and what it goes aside for each step along its main axis. An axis a
-// cycle, x first, its results 23 cycles later; a register's name ends with the stage that loads it, and first_i says in
-// which the first axis of a ray is. A direction that is infinite, not a number or all zero makes no ray.
+// cycle, x first, its results 23 cycles later; a register's name ends with the stage that loads it, and first_i marks
+// the stage that holds a ray's first axis. A direction that is infinite, not a number or all zero makes no ray.
 `default_nettype none
 module rp_ray_direction #(
   parameter integer BITS = 12

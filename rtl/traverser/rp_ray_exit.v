@@ -111,7 +111,7 @@ module rp_ray_exit #(
       fate_triangle_q <= triangle_among(done_grant, done_place_i);
     end
 
-  // ---- 2: what it becomes, by what its slot says of it
+  // ---- 2: what it becomes, by what is kept in its slot
   wire [LANES*SET_BITS-1:0] sets;
   generate
     for (g = 0; g < LANES; g = g + 1) begin : gen_set

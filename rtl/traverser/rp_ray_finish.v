@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // What a ray carries on of its hit, without double: the time, where in the triangle, and the triangle's normal.
-// docs/machine/ray-finish.md says what is computed. A ray's corners, axes and quotients follow each other through the
-// units, and its results are there together 66 cycles after it came; it never waits. A name ends with the stage that
-// holds what is of the first of three then. Promises: valid_o, and all that goes with it, for one cycle. Must be given:
-// rays three cycles apart or more; a hit's internal t, neither below zero nor infinite; finite coordinates, of which no
-// two are further apart than 1e18 along an axis.
+// docs/machine/ray-finish.md defines what is computed. A ray's corners, axes and quotients follow each other through
+// the units, and its results are there together 66 cycles after it came; it never waits. A name ends with the stage
+// that holds what is of the first of three then. Promises: valid_o, and all that goes with it, for one cycle. Must be
+// given: rays three cycles apart or more; a hit's internal t, neither below zero nor infinite; finite coordinates, of
+// which no two are further apart than 1e18 along an axis.
 `default_nettype none
 module rp_ray_finish #(
   parameter integer TAG_BITS = 16

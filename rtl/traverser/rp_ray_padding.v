@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // By how much a ray's origin is padded against what rounding loses: for a triangle's own box, as the floats next to
 // origin and padding, and for the boxes of nodes, as an exponent. An axis a cycle, x first, its results 23 cycles
-// later; a register's name ends with the stage that loads it, and first_i says in which the first axis of a ray is.
+// later; a register's name ends with the stage that loads it, and first_i marks the stage that holds a ray's first
+// axis.
 `default_nettype none
 module rp_ray_padding (
   input  wire        clk_i,

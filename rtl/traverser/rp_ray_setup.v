@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// What is computed once of a ray, for box_pipe and triangle_pipe: docs/machine/ray-setup.md says what, and why it is
-// exact. A ray's axes follow each other through the units, x first, and leave side by side, 27 cycles after the ray
+// What is computed once of a ray, for box_pipe and triangle_pipe: docs/machine/ray-setup.md defines it and shows why it
+// is exact. A ray's axes follow each other through the units, x first, and leave side by side, 27 cycles after the ray
 // came; it never waits. A register's name ends with the stage that loads its first axis. Promises: valid_o, and all
 // that goes with it, for one cycle. Must be given: rays three cycles apart or more; a box of the scene that stands
 // still, lower bounds not above upper ones.

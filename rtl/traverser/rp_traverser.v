@@ -4,7 +4,7 @@
 // then. A ray is set up, given to a lane that has a slot for it, visits nodes and triangles there, and goes through
 // rp_ray_exit.v. Lanes share two caches and the port to the traverser's memory, and some of them a triangle pipe.
 // Promises: what a ray hits is what rp_triangle_pipe.v hits of all triangles in the tree; a ray in the traverser waits
-// for nobody but the memory and those before it in ray_exit; whatever the memory holds, rays end or there is a fault,
+// only for the memory and for those before it in ray_exit; whatever the memory holds, rays end or there is a fault,
 // which stays until the reset: no more rays come in then, no node is tested, nothing is requested, and no ray is done,
 // so that the one with the fault never leaves; what was done before still does. No output depends on an input of the
 // same cycle. Must be given: a place that is not free for each ray; a tree as docs/use/tree-file.md has it, or a fault

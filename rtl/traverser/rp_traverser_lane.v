@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // A lane of the traverser: slots for rays, a box pipe, the stacks, and what is kept of each ray and its best hit. Nodes
 // and leaves come from two caches that lanes share, and triangles go to a triangle pipe, which may be shared too. A
-// slot is given to a ray, which comes when it is set up; visits what its nodes, stack and hits say; and is offered with
-// its best hit when it has visited everything, or, if it is a shadow ray, has found a blocker.
+// slot is given to a ray, which comes when it is set up; visits what its nodes, stack and hits lead to; and is offered
+// with its best hit when it has visited everything, or, if it is a shadow ray, has found a blocker.
 // Whatever lies in the memory, a ray's walk ends, with the ray done or with a fault. A way back to a node has a step to
 // a number that is not above the one before it: that is looked for in each node that comes, so the fault has the node
 // with that step. Ways that meet again, and entries that come back wrong from the memory of the stacks, are no such
 // step: a ray that has come to as many nodes as there are may come to none. Leaves need no count, as each is a child of
 // such a node.
 // Promises: what a ray hits is what triangle_pipe hits of all triangles in the tree, whatever comes in which order. No
-// output depends on an input of the same cycle, but what the triangle pipe is told.
+// output depends on an input of the same cycle, but what the triangle pipe is given.
 // Must be given: a ray once for a slot that was taken, and the slot back once after the ray was taken; what leaf_reader
 // must be of each cache; triangle_pipe's results.
 `default_nettype none
@@ -99,10 +99,10 @@ module rp_traverser_lane #(
   output wire [1:0]              test_main_axis_o,
   output wire [63:0]             test_shear_o,
   output wire [104:0]            test_direction_o,
-  input  wire [SLOT_BITS-1:0]    limit_slot_i,   // a cycle before it is told
+  input  wire [SLOT_BITS-1:0]    limit_slot_i,   // a cycle before it is given
   output wire [31:0]             limit_o,
   output wire [8:0]              scale_o,
-  input  wire [SLOT_BITS-1:0]    best_slot_i,    // a cycle before it is told
+  input  wire [SLOT_BITS-1:0]    best_slot_i,    // a cycle before it is given
   output wire [31:0]             best_t_o,
   output wire [31:0]             best_number_o,
   input  wire                    result_valid_i,
@@ -174,7 +174,7 @@ module rp_traverser_lane #(
   genvar g;
   generate
     for (g = 0; g < 2; g = g + 1) begin : gen_nodes
-      // Who goes on is known late in a cycle.
+      // The ray that goes on is known late in a cycle.
       reg go_q;
       reg [WANT_BITS-1:0] go_node_q;
       always @(posedge clk_i) go_q <= rst_ni && go[g] && !go_reference[32*g+31];
@@ -190,7 +190,7 @@ module rp_traverser_lane #(
       );
     end
   endgenerate
-  reg node_turn_q;                               // whose head comes next
+  reg node_turn_q;                               // the queue that comes next
   wire node_second = node_waits[node_turn_q] ? node_turn_q : !node_turn_q;
   wire offers_ready, asked;                      // asked: in the cycle before
   wire [1:0] offered;
@@ -260,7 +260,7 @@ module rp_traverser_lane #(
     .write_address_i(asked_slot),
     .write_data_i(asked_line)
   );
-  reg [SLOTS-1:0] fresh_q;                       // slots whose ray has come to no node yet
+  reg [SLOTS-1:0] fresh_q;                       // slots with a ray that has come to no node yet
   wire [LINE_BITS-1:0] visits = fresh_q[given_slot_q] ? {LINE_BITS{1'b0}} : counted;
   wire [LINE_BITS-1:0] visits_then = visits + {{LINE_BITS-1{1'b0}}, 1'b1};
   rp_ram_1r1w #(.WIDTH(LINE_BITS), .DEPTH(SLOTS)) counts (

@@ -30,7 +30,7 @@ module rp_tree_banks #(
   // of each lane: there is a line for which it has waited
   output wire [LANES-1:0]             waited_valid_o,
   input  wire [LANES-1:0]             waited_ready_i,
-  // who gets a line
+  // lanes that get a line
   output wire [LANES-1:0]             given_valid_o,
   output wire [LANES*SLOT_BITS-1:0]   given_slot_o,
   output wire [LANES*DATA_BITS-1:0]   given_data_o,
@@ -165,7 +165,7 @@ module rp_tree_banks #(
   assign request_line_o = line_among(request_grant, request_line);
   assign request_id_o = id_among(request_grant, request_id);
 
-  // ---- Who gets a line: of one bank at most
+  // ---- Lanes that get a line: of one bank at most
 
   `ONEHOT_SELECT(slot_among, BANKS, SLOT_BITS)
   `ONEHOT_SELECT(data_among, BANKS, DATA_BITS)

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // A bank of a cache of the traverser, read only: a lookup a cycle, of a line for all lanes that ask for it. A hit gives
 // them the line two cycles later. A miss asks the memory for the line; lanes wait in a list and are offered the line,
-// oldest first, once it has come. A lookup for no lane asks for a line that somebody will want, if a register is free.
-// Promises: a line that somebody waits for stays until the last one has it; a line is in one way at most, and in one
+// oldest first, once it has come. A lookup for no lane prefetches a line that will be wanted, if a register is free.
+// Promises: a line that lanes wait for stays until the last one has it; a line is in one way at most, and in one
 // register; requests leave in the order of the misses. ready_o depends on fill_valid_i of the same cycle, and no other
 // output on any input; and it does not depend on whether the lookup before hits. A line that comes is taken in the next
 // cycle at the latest; lookups go on unless no register is free, or a lane does not take what it is offered.
@@ -29,11 +29,11 @@ module rp_tree_cache #(
   input  wire [LINE_BITS-1:0]       line_i,
   input  wire [LANES-1:0]           lanes_i,
   input  wire [LANES*SLOT_BITS-1:0] slots_i,
-  // who gets a line
+  // lanes that get a line
   output reg  [LANES-1:0]           given_lanes_o,
   output reg  [LANES*SLOT_BITS-1:0] given_slots_o,
   output wire [DATA_BITS-1:0]       given_data_o,
-  // an offer to who has waited: given two cycles after it was taken
+  // an offer to a lane that has waited: given two cycles after it was taken
   output wire                       offer_valid_o,
   input  wire                       offer_ready_i,
   output wire [LANES-1:0]           offer_lane_o,     // one bit
@@ -76,7 +76,7 @@ module rp_tree_cache #(
 
   // ---- State
 
-  reg looks_q;                                    // a lookup whose tags have been read
+  reg looks_q;                                    // a lookup: its tags have been read
   reg fresh_q;                                    // it has, in the cycle before: later they may be out of date
   reg [LINE_BITS-1:0] line_q;
   reg [SETS-1:0] set_q;                           // its set, a bit: line_q has enough to drive
@@ -86,14 +86,14 @@ module rp_tree_cache #(
   reg [LANES*SLOT_BITS-1:0] join_slots_q;
   reg [MSHR_BITS-1:0] join_id_q;                  // the register
   reg [LINES-1:0] valid_q;
-  // A tree of bits, of which each says in which half a way was used less recently. Bit 0 stays 0.
+  // A tree of bits, each of which points to the half that was used less recently. Bit 0 stays 0.
   reg [SETS*WAYS-1:0] order_q;
   reg [MSHRS-1:0] busy_q, filled_q, waited_for_q;
   reg [MSHRS*LINE_BITS-1:0] mshr_line_q;
   reg [MSHRS*WAY_BITS-1:0] mshr_way_q;
-  reg [MSHRS*WAITER_BITS-1:0] head_q, tail_q;     // who waits longest, and shortest: lane and slot
+  reg [MSHRS*WAITER_BITS-1:0] head_q, tail_q;     // first and last of the list: lane and slot
 `include "rp_onehot.vh"
-  localparam [1:0] NOBODY = 2'd0, CHOSEN = 2'd1, OFFERED = 2'd2;
+  localparam [1:0] IDLE = 2'd0, CHOSEN = 2'd1, OFFERED = 2'd2;
   reg [1:0] serving_q;
   reg [MSHR_BITS-1:0] serve_id_q;
 
@@ -149,8 +149,8 @@ module rp_tree_cache #(
       end
     end
   end
-  // The less recently used half, unless all its ways are promised. Each half says for itself which of its own two is,
-  // as which of them lead to the victim is known late.
+  // The less recently used half, unless all its ways are promised. Each half decides for itself which of its own two
+  // is, as which of them lead to the victim is known late.
   integer n;
   reg [2*WAYS-1:0] unlocked, leads;               // a way of this half is not promised; the victim is of this half
   reg [WAYS-1:0] upper;                           // the less recently used one of its halves is the upper one
@@ -183,8 +183,8 @@ module rp_tree_cache #(
   wire blocked = miss && stuck;
   wire will_join = miss && asked && !stuck;
   wire [MSHRS-1:0] waits = filled_q & waited_for_q;
-  wire choose = serving_q == NOBODY && waits != NO_MSHR;
-  assign ready_o = serving_q == NOBODY && !choose && !fill_valid_i && !(looks_q && stuck);
+  wire choose = serving_q == IDLE && waits != NO_MSHR;
+  assign ready_o = serving_q == IDLE && !choose && !fill_valid_i && !(looks_q && stuck);
   assign fill_ready_o = !hit;
 
   always @(posedge clk_i)
@@ -223,7 +223,7 @@ module rp_tree_cache #(
     else if (fill) valid_q[{fill_set, fill_way}] <= 1'b1;
 
   // The way that is used, or promised, becomes the most recently used one. Tags are compared last: so of a hit each way
-  // says for itself in which halves it is, and of a miss it is known which order follows.
+  // decides for itself in which halves it is, and of a miss it is known which order follows.
   reg [WAYS-1:0] order_hit, order_miss, lower_hit, upper_hit;   // lower: a way of that half is hit
   integer o, u;
   always @* begin
@@ -271,8 +271,8 @@ module rp_tree_cache #(
   wire [MSHR_BITS-1:0] choice_id = mshr_among(choice);
   wire [WAITER_BITS-1:0] choice_head = head_q[choice_id*WAITER_BITS +: WAITER_BITS];
 
-  // Who waits behind whom. Lanes that join a line's list when it has come do so in one cycle after another from that in
-  // which it came on: so who is next is read when nobody joins.
+  // The lists of lanes that wait. Lanes that join a line's list when it has come do so in one cycle after another from
+  // that in which it came on: so the next one is read when none joins.
   wire [WAITER_BITS-1:0] next;
   wire append = joins && waited_for_q[join_id_q];
   rp_ram_1r1w #(.WIDTH(WAITER_BITS), .DEPTH(1 << WAITER_BITS)) waiters (
@@ -308,15 +308,16 @@ module rp_tree_cache #(
   );
   assign request_line_o = mshr_line_q[request_id_o*LINE_BITS +: LINE_BITS];
 
-  // Who has waited. While it is served no lookup is taken: so nobody joins the list whose head has been read, and no
-  // hit wants the data in the cycle in which it is read.
+  // Serving a list. Meanwhile no lookup is taken: so no lane joins the list after its head has been read, and no hit
+  // wants the data in the cycle in which it is read.
   always @(posedge clk_i)
-    if (!rst_ni) serving_q <= NOBODY;
+    if (!rst_ni) serving_q <= IDLE;
     else if (choose) serving_q <= joins ? CHOSEN : OFFERED;
     else if (serving_q == CHOSEN && !joins) serving_q <= OFFERED;
-    else if (hand_on) serving_q <= the_last ? NOBODY : CHOSEN;
+    else if (hand_on) serving_q <= the_last ? IDLE : CHOSEN;
   always @(posedge clk_i) if (choose) serve_id_q <= choice_id;
-  // Who will be offered it is kept in the cycle before, in which the head does not change any more: lanes answer late.
+  // The lane to be offered the line is kept in the cycle before, in which the head does not change any more: lanes
+  // answer late.
   wire [WAITER_BITS-1:0] next_offer = choose ? choice_head : head;
   reg [LANES-1:0] offer_lane_q;
   reg [SLOT_BITS-1:0] offer_slot_q;
@@ -331,7 +332,7 @@ module rp_tree_cache #(
 
   // ---- Data
 
-  reg read_q;                                     // for who took the offer
+  reg read_q;                                     // for the lane that took the offer
   reg [LANES-1:0] read_lane_q;
   reg [SLOT_BITS-1:0] read_slot_q;
   reg [ROW_BITS-1:0] read_row_q;

@@ -4,11 +4,11 @@
 // lines that come back in the order of the reads. Nodes lie from line 0 on, triangles from triangles_line_i, the stacks
 // from stacks_line_i: of a slot 2^BLOCK_BITS blocks of four entries of 64 bits, two blocks to a line.
 // What lies beyond the tree is not asked for: it is a fault, as is the block of a stack that has no room for one more.
-// That is found here, where all lines pass, and not where a lane comes to a node, whose cycle is full.
-// Promises: a request that is offered stays until it is taken; each line is given to who asked for it, once; no line
+// That is found here, where all lines pass, and not where a lane comes to a node: that cycle is full.
+// Promises: a request that is offered stays until it is taken; each line is given to its requester, once; no line
 // beyond the tree is requested. Requests and faults depend on no input of the same cycle.
-// Must be given: at most LINES reads on their way; lines of four beats, whose receivers take them before the last beat
-// of the next one; stop_i from the cycle after a fault on.
+// Must be given: at most LINES reads on their way; lines of four beats, which receivers take before the last beat of
+// the next one; stop_i from the cycle after a fault on.
 `default_nettype none
 module rp_tree_port #(
   parameter integer LANES = 8,
@@ -67,14 +67,14 @@ module rp_tree_port #(
   input  wire [127:0]                  response_data_i
 );
   localparam integer LANE_BITS = (LANES > 1) ? $clog2(LANES) : 1;
-  localparam integer STACK_ID_BITS = LANE_BITS + 1;       // whose, and which half of the line
+  localparam integer STACK_ID_BITS = LANE_BITS + 1;       // lane, and which half of the line
   localparam integer CACHE_ID_BITS = (NODE_ID_BITS > TRIANGLE_ID_BITS) ? NODE_ID_BITS : TRIANGLE_ID_BITS;
   localparam integer ID_BITS = (CACHE_ID_BITS > STACK_ID_BITS) ? CACHE_ID_BITS : STACK_ID_BITS;
   localparam integer STACK_LINE_BITS = LANE_BITS + SLOT_BITS + BLOCK_BITS - 1;
 `include "rp_onehot.vh"
   localparam [1:0] NODES = 2'd0, TRIANGLES = 2'd1, STACKS = 2'd2;
 
-  // ---- Who asks
+  // ---- Requesters
   wire free = !request_valid_o || request_ready_i;
   wire takes = free && !fault_valid_o && !stop_i;
   wire [2:0] grant;
@@ -136,7 +136,7 @@ module rp_tree_port #(
     end
   assign request_second_o = request_write_o;
 
-  // ---- Whose lines are on their way; behind one beyond the tree, which never comes, none is
+  // ---- Requesters of the lines on their way; behind one beyond the tree, which never comes, there are none
   reg [ID_BITS-1:0] id;
   always @* begin
     id = {ID_BITS{1'b0}};

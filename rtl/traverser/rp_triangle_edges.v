@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // On which side of a triangle's three edges a ray passes, exactly: the sign of each edge function x_a y_b - y_a x_b
 // from its two products, compared and not subtracted: docs/machine/triangle-test.md has the argument. A triangle
-// a cycle, its result five moves later. Promises: it moves unless a result is there that nobody takes; no output but
+// a cycle, its result five moves later. Promises: it moves unless a result is there and is not taken; no output but
 // ready_o depends on an input of the same cycle. Must be given: floats that are finite.
 `default_nettype none
 module rp_triangle_edges (
@@ -29,7 +29,7 @@ module rp_triangle_edges (
     if (!rst_ni) {valid_o, valid_q} <= 5'd0;
     else if (move) {valid_o, valid_q} <= {valid_q, valid_i};
 
-  // ---- Stages 1 and 2: significands whose first bit is 1, of subnormal numbers too. First by 16 and 8 places.
+  // ---- Stages 1 and 2: significands that begin with a 1, of subnormal numbers too. First by 16 and 8 places.
   wire [191:0] numbers = {y_i, x_i};
   wire [5:0] sign_2, zero_2;
   wire [6*WIDTH-1:0] value_2;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // A triangle pipe, and the lanes that share it: each cycle one of those that have a test begins it, in rotation. What
-// the pipe asks for is asked of all lanes, and who answers is the lane whose test it is.
+// the pipe asks for is asked of all lanes, and the lane that owns the test answers.
 // Must be given: what triangle_pipe must.
 `default_nettype none
 module rp_triangle_group #(
@@ -17,7 +17,7 @@ module rp_triangle_group #(
   output wire [LANES-1:0]           test_ready_o,
   input  wire [LANES*TAG_BITS-1:0]  test_tag_i,
   input  wire [LANES*WIDTH-1:0]     test_i,
-  // the ray's limit, and its best hit: told in the cycle after it is asked for
+  // the ray's limit, and its best hit: given in the cycle after it is asked for
   output wire [TAG_BITS-1:0]        limit_tag_o,
   input  wire [LANES*32-1:0]        limit_i,
   input  wire [LANES*9-1:0]         scale_i,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The normal of a triangle, (1 - 0) x (2 - 0) of its corners, and its length. An axis a cycle, x first; a name ends
-// with the stage that holds what is of the first one then, and first_i says in which that is. Numbers have a sign, 11
-// bits of exponent and so many behind the first one; none is subnormal.
+// with the stage that holds what is of the first one then, and first_i marks that stage. Numbers have a sign, 11 bits
+// of exponent and so many behind the first one; none is subnormal.
 // Must be given: finite floats, of which no difference is infinite.
 `default_nettype none
 module rp_triangle_normal #(

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Whether and where a ray hits a triangle, from the triangle's plane: docs/machine/triangle-test.md defines it.
 // A test a cycle, its result 30 + BITS / 2 cycles later; it never waits. Tests of one ray may follow each other at
-// once: what may change, its best hit, each is told in the cycle before its result, so who answers must take the result
-// that is shown then into account. Each asks a cycle before it is told. Must be given: corners, and what the set-up of
-// a valid ray has, so that no difference is infinite; a limit above zero, and a best hit that is not before zero.
+// once: what may change, its best hit, each is given in the cycle before its result, so the answer must take the result
+// that is shown then into account. Each asks a cycle before it is answered. Must be given: corners, and what the set-up
+// of a valid ray has, so that no difference is infinite; a limit above zero, and a best hit that is not before zero.
 `default_nettype none
 module rp_triangle_pipe #(
   parameter integer BITS = 32,        // of the significands of t
@@ -24,7 +24,7 @@ module rp_triangle_pipe #(
   input  wire [1:0]          main_axis_i,
   input  wire [63:0]         shear_i,
   input  wire [104:0]        direction_i,     // sign, 11 bits of exponent, 23 of fraction; x first
-  // five cycles before its result a test asks for its ray's limit, and is told in the next cycle
+  // five cycles before its result a test asks for its ray's limit, and is answered in the next cycle
   output wire                asks_limit_o,
   output wire [TAG_BITS-1:0] limit_tag_o,
   input  wire [31:0]         limit_i,

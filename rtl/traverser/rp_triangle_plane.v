@@ -5,7 +5,7 @@
 // cycle, 23 + BITS / 2 cycles; it never waits.
 // Promises: each operation is rounded once, to nearest even, sums from left to right, and t once more, to a float; it
 // is infinite, or not a number, where n . d is zero.
-// Must be given: finite floats, of which no difference is infinite; a direction whose largest component is 1 .. 2.
+// Must be given: finite floats, of which no difference is infinite; a direction with a largest component of 1 .. 2.
 `default_nettype none
 module rp_triangle_plane #(
   parameter integer BITS = 32

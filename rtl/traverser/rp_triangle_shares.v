@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Of the point in which a ray hits a triangle, the shares of the corners, as numerators and their sum: each corner's
 // weight is the cross product of the other two, as the ray sees them. Of a hit all weights have one sign, so sizes do.
-// A corner a cycle, 0 first; a name ends with the stage that holds what is of the first corner then, and first_i says
-// in which that is. Numbers have a sign, 11 bits of exponent and 31 behind the first one; none is subnormal.
+// A corner a cycle, 0 first; a name ends with the stage that holds what is of the first corner then, and first_i marks
+// that stage. Numbers have a sign, 11 bits of exponent and 31 behind the first one; none is subnormal.
 // Must be given: numbers of which no difference or product is too large for a float.
 `default_nettype none
 module rp_triangle_shares (

@@ -2,7 +2,7 @@
 
     PYTHONPATH=scripts python3 -m diagrams RAYPOOL FOLDER [--check]
 
-FOLDER keeps what Icarus makes. A picture whose modules are not in rtl/ is refused, and one of the chip that lacks a
+FOLDER keeps what Icarus makes. A picture with modules that are not in rtl/ is refused, and one of the chip that lacks a
 block of it, or shows another. --check writes nothing and ends with 1 if a picture would change.
 """
 import pathlib

@@ -1,7 +1,7 @@
 """The chip in Verilog: what rtl/chip/rp_chip.v joins, with what stands in its multiprocessor and its traverser."""
 from .svg import Picture
 
-# Modules whose insides are shown, and what of these is left out: arbiters of a few gates.
+# Modules that are shown from inside, and what of these is left out: arbiters of a few gates.
 OPENED = ("chip", "multiprocessor", "traverser")
 LEFT_OUT = {"round_robin"}
 

@@ -84,7 +84,7 @@ class Picture:
         self.modules |= {name} | {part.split(" ")[0] for part in parts}
 
     def group(self, place, name="", note="", copies=0):
-        """A frame around boxes; `copies` frames behind it say that there are several."""
+        """A frame around boxes; `copies` frames behind it show that there are several."""
         x, y, width, height = place
         for copy in range(copies, 0, -1):
             self.rectangle(x + 4 * copy, y + 4 * copy, width, height, "group")

@@ -71,7 +71,7 @@ def write_folder(folder, texts):
 
 
 def put_in(source, folder, options):
-    """The faults, in a tree whose rtl/ has them: verilate.sh builds from the tree that it stands in."""
+    """The faults, in the rtl/ of a tree: verilate.sh builds from the tree that it stands in."""
     folder.mkdir(parents=True, exist_ok=True)
     texts = {name: path.read_text() for name, path in files_of(ROOT / "rtl").items()}
     count, judged = options.count or COUNTS.get(source), "all"

@@ -1,6 +1,6 @@
 """Puts small random faults into the text of modules. A fault inverts or ties a bit of a signal where an expression
 reads it, or takes one operator for another, leaves out a negation, or is off by one in a number. Each is behind its
-number, as the mistakes of the catalogue are, so all instances of the module, of any size, have it.
+number, as the faults of the catalogue are, so all instances of the module, of any size, have it.
 """
 import hashlib
 import random
@@ -95,22 +95,22 @@ def expressions(text):
     return trimmed
 
 
-def bit_of(signal, chance):
+def bit_of(signal, rng):
     """A bit of it, counted from its lowest."""
     _, upper, lower = signal
     if not upper:
         return "0"
     if upper.isdigit() and lower.isdigit():
-        return str(chance.randrange(int(upper) - int(lower) + 1))
-    return chance.choice(["0", f"({upper} - {lower})" if lower != "0" else f"({upper})"])
+        return str(rng.randrange(int(upper) - int(lower) + 1))
+    return rng.choice(["0", f"({upper} - {lower})" if lower != "0" else f"({upper})"])
 
 
-def faulty_read(text, name, signal, chance):
+def faulty_read(text, name, signal, rng):
     """What is read, `text`, with a faulty bit, and which."""
     whole = text == name
-    bit = bit_of(signal, chance) if whole else "0"
+    bit = bit_of(signal, rng) if whole else "0"
     mask = f"(1'b1 << {bit})" if whole and signal[1] else "1'b1"
-    kind = chance.choice(["inverted", "0", "1"])
+    kind = rng.choice(["inverted", "0", "1"])
     wrong = {"inverted": f"{text} ^ {mask}", "0": f"{text} & ~({mask})", "1": f"{text} | {mask}"}[kind]
     if whole and signal[0]:
         wrong = f"$signed({wrong})"
@@ -123,7 +123,7 @@ def counts_of_copies(inside, signals):
     return [found.span(1) for found in groups if not any(word in signals for word in re.findall(NAME, found[1]))]
 
 
-def edits_of(inside, signals, chance):
+def edits_of(inside, signals, rng):
     """Faults of one expression: [(what it becomes, sentence)]."""
     copies = counts_of_copies(inside, signals)
     edits, depth, behind, last = [], 0, -1, None
@@ -143,7 +143,7 @@ def edits_of(inside, signals, chance):
             while inside[upto : upto + 1] == "[":
                 upto = behind = closing(inside, upto) + 1
             for _ in range(2):
-                new, what = faulty_read(inside[at:upto], word, signals[word], chance)
+                new, what = faulty_read(inside[at:upto], word, signals[word], rng)
                 put(new, what, upto)
         elif word in OTHER and not unary:
             put(OTHER[word], f"{OTHER[word]} in place of {word}", token.end())
@@ -151,7 +151,7 @@ def edits_of(inside, signals, chance):
             put(" ", f"{word} is left out", token.end())
         elif NUMBER.match(word):
             width, value = map(int, NUMBER.match(word).groups())
-            other = (value + chance.choice([1, -1])) % (1 << width)
+            other = (value + rng.choice([1, -1])) % (1 << width)
             put(f"{width}'d{other}", f"{width}'d{other} in place of {word}", token.end())
         elif word in ("1'b0", "1'b1"):
             put("1'b1" if word == "1'b0" else "1'b0", f"not {word}", token.end())

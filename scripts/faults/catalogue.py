@@ -1,4 +1,4 @@
-"""Puts every mistake of tb/faults/catalogue.json into a copy of rtl/, each behind its number: where the catalogue has
+"""Puts every fault of tb/faults/catalogue.json into a copy of rtl/, each behind its number: where the catalogue has
 `right`, the copy has `designer_fault == N ? wrong : right`, or an `if` of statements. With number 0 the copy is what
 rtl/ is. The number comes from the environment variable RAYPOOL_FAULT in Verilator, from +fault=N in Icarus.
 """
@@ -9,7 +9,7 @@ from .errors import Refused
 
 SELECTED = r'''$c32("(std::getenv(\"RAYPOOL_FAULT\") ? std::atoi(std::getenv(\"RAYPOOL_FAULT\")) : 0)")'''
 SELECTOR = f"""
-  // The mistake that this module makes; 0: none.
+  // The fault that this module has; 0: none.
   reg [31:0] designer_fault;
 `ifdef VERILATOR
   initial designer_fault = {SELECTED};

@@ -12,7 +12,7 @@ from .errors import Refused, yosys
 # for), and what the language makes wider than needed (a loop's 32-bit index); a choice by position is first made one
 # of multiplexers, or bits that no position chooses would get some. Each instance has its own logic, so a fault is in
 # one lane of one warp. A cell keeps its own place in the source, without those of the instances around it. At the
-# end the wires are split where their drivers are, or Verilator would see loops through words whose bits depend on
+# end the wires are split where their drivers are, or Verilator would see loops through words with bits that depend on
 # each other, and be four times as slow.
 MUTATE = """read_verilog -Irtl/include rtl/*/*.v
 hierarchy -check -top rp_compute_unit {parameters}
@@ -45,21 +45,21 @@ def option_of(line, name):
 
 def fault_of(number, line):
     """What Yosys' `mutate -list` prints of one, without the numbers that it makes up."""
-    # Lines of rtl/*/*.v, the first one with a number (line 0 is a whole loop); a header's place says little.
+    # Lines of rtl/*/*.v, the first one with a number (line 0 is a whole loop); a header's place helps little.
     places = re.findall(r"-src rtl/[a-z]+/([a-z_0-9]+\.v):([0-9]+)\.", line)
     file, at = next((place for place in places if place[1] != "0"), places[0] if places else ("", ""))
-    # A cell's name: where it is in the hierarchy, what it is, its place, and a running number, which says nothing.
+    # A cell's name: where it is in the hierarchy, what it is, its place, and a running number, which means nothing.
     cell = re.sub(r"\$([a-z_]+)\$[^ $]*?([a-z_0-9]+\.vh?:[0-9]+)\$[0-9]+", r"\1 at \2", option_of(line, "cell"))
     cell = re.sub(r"\$[^ $]*\.cc:[0-9]+:", "", cell)
     cell = re.sub(r"^\$(flatten|auto|techmap)+|\\|\$[0-9]+|\$", "", cell)
     if " at " not in cell and file:
         cell += f" at {file}:{at}"
-    mistake = f"{option_of(line, 'mode')}, {option_of(line, 'port')}[{option_of(line, 'portbit')}] of {cell}"
+    what = f"{option_of(line, 'mode')}, {option_of(line, 'port')}[{option_of(line, 'portbit')}] of {cell}"
     if option_of(line, "ctrlbit"):
-        mistake += f", by bit {option_of(line, 'ctrlbit')}"
+        what += f", by bit {option_of(line, 'ctrlbit')}"
     if option_of(line, "wire"):
-        mistake += f", wire {option_of(line, 'wire')}[{option_of(line, 'wirebit')}]"
-    return {"number": number, "file": file or "(made by Yosys)", "mistake": mistake}
+        what += f", wire {option_of(line, 'wire')}[{option_of(line, 'wirebit')}]"
+    return {"number": number, "file": file or "(made by Yosys)", "mistake": what}
 
 
 def with_number(netlist, parameters, declared):

@@ -3,7 +3,7 @@
     PYTHONPATH=scripts python3 -m follow [--pixel X,Y] [--scene SCENE] [--config CONFIG] [--out FOLDER] ...
 
 Draws the frame (raypool sim --engine rtl --boundary chip --waves), reads the waveform, prints the journey, draws
-pictures of it into FOLDER, and compares all that can be reckoned otherwise. Exit code 1, and a sentence, if the frame
+pictures of it into FOLDER, and compares all that the host can compute itself. Exit code 1, and a sentence, if the frame
 cannot be followed, 3 if something differs. RAYPOOL names the program, BUILD the folder it is in if not.
 """
 import argparse
@@ -21,7 +21,7 @@ from .errors import FollowError, build, need, run
 from .journey import STATIONS, Journey
 from .pictures import draw_pictures
 from .ports import SIGNALS, Chip
-from .scene import Reckoning, Tree, materials_of
+from .scene import HostPixel, Tree, materials_of
 from .table import check_lines, journey_lines, last_lines
 from .vcd import Wave, followed, lines_of
 
@@ -63,7 +63,7 @@ def options_of(arguments):
     if wrong:
         raise FollowError(f"--station {wrong[0]}: there are {', '.join((*STATIONS, *MORE))}")
     if not re.fullmatch(r"\d+,\d+", options.pixel):
-        raise FollowError(f"--pixel {options.pixel}: say it as X,Y, such as 20,10")
+        raise FollowError(f"--pixel {options.pixel}: give it as X,Y, such as 20,10")
     options.pixel = tuple(map(int, options.pixel.split(",")))
     if options.scene == SCENE:
         options.scene = str(ROOT / SCENE)
@@ -77,7 +77,7 @@ def check_pixel(pixel, width, height):
 
 
 class Frame:
-    """The run: its folder, its report, and the commands that say more of it."""
+    """The run: its folder, its report, and the commands that show more of it."""
 
     def __init__(self, options):
         self.options = options
@@ -133,7 +133,7 @@ class Frame:
         try:
             return json.loads((self.folder / name).read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
-            raise FollowError(f"{self.folder / name}: this is no report of raypool sim ({error})") from error
+            raise FollowError(f"{self.folder / name}: this is not a report of raypool sim ({error})") from error
 
     def waveform(self):
         if not self.options.run:
@@ -166,16 +166,16 @@ class Frame:
 
 
 def compare(options, frame, chip, journey, tree, materials):
-    """What the host reckons beside it."""
+    """What the host computes beside it."""
     check = Check()
     cycles = frame.report["cycles"]
     check.note("cycles of the frame", chip.wave.cycles, cycles, chip.wave.cycles == cycles)
     offset = packages.to_float(chip.arguments[18])
-    reckoning = Reckoning(tree, materials, frame.report["view"], offset, frame.size, frame.report["depth"])
-    reckoning.follow(options.pixel)
-    check.rays(journey, reckoning)
+    host = HostPixel(tree, materials, frame.report["view"], offset, frame.size, frame.report["depth"])
+    host.follow(options.pixel)
+    check.rays(journey, host)
     image = frame.folder / "image.png"
-    check.colour(journey, reckoning, picture.read(image), options.pixel)
+    check.colour(journey, host, picture.read(image), options.pixel)
     same = image.read_bytes() == frame.native()
     check.note("image.png and that of engine native", "the same" if same else "not the same", "the same", same)
     return check
@@ -196,7 +196,7 @@ def main(arguments):
              *last_lines(options, frame, journey, check, wrong, names)]  # fmt: skip
     try:
         print("\n".join(lines), flush=True)
-    except BrokenPipeError:  # whoever reads it has seen enough
+    except BrokenPipeError:  # the reader has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     for line in wrong:
         print(f"follow: {line}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""The journey beside what the host reckons (scene.py), and beside the pictures that were written."""
+"""The journey beside what the host computes (scene.py), and beside the pictures that were written."""
 import math
 
 from . import packages, picture
@@ -14,7 +14,7 @@ class Check:
         self.lines, self.differ = [], []
 
     def note(self, what, seen, expected, good):
-        line = f"{what}: {seen}" + ("" if good else f", but {expected} by the host's reckoning")
+        line = f"{what}: {seen}" + ("" if good else f", but {expected} by the host's computation")
         self.lines.append(line + ("" if good else "  <-- differs"))
         if not good:
             self.differ.append(line)
@@ -25,26 +25,26 @@ class Check:
         good = all(math.isfinite(one) and abs(one - other) <= most for one, other in zip(seen, expected))
         self.note(what, packages.text(seen), packages.text(expected), good)
 
-    def rays(self, journey, reckoning):
+    def rays(self, journey, host):
         """All that are expected are there, and no others; a chip that culls leaves out what adds nothing."""
         culling = journey.chip.wave.constant("CULLING")
-        for name, expected in reckoning.rays.items():
+        for name, expected in host.rays.items():
             if name not in journey.lives and (expected.useful or not culling):
                 self.note(name, "there is none", "there is one", False)
         for name, life in journey.lives.items():
-            if name in reckoning.rays:
-                self.ray(name, life, reckoning.rays[name], reckoning)
+            if name in host.rays:
+                self.ray(name, life, host.rays[name], host)
             else:
                 self.note(name, "there is one", "there is none", False)
 
-    def ray(self, name, life, expected, reckoning):
-        size = reckoning.tree.largest
+    def ray(self, name, life, expected, host):
+        size = host.tree.largest
         self.vector(f"{name}, origin", packages.floats(life.words, ORIGIN), expected.origin, size)
         self.vector(f"{name}, direction", packages.floats(life.words, DIRECTION), expected.direction,
                     size if packages.is_shadow(life.words) else 0)  # fmt: skip
         self.vector(f"{name}, colour", packages.floats(life.words, COLOR), expected.color, expected.brightest)
         if life.walk:
-            self.walk(name, life, reckoning.tree)
+            self.walk(name, life, host.tree)
         if packages.is_shadow(life.words):
             fates = ("blocked", "free")
             if life.fate != "dropped":
@@ -52,21 +52,21 @@ class Check:
                     f"{name}, way to the light", life.fate, fates[expected.free], life.fate == fates[expected.free]
                 )
         elif life.fate in ("hit", "missed"):
-            self.hit(name, life, expected.hit, reckoning)
+            self.hit(name, life, expected.hit, host)
 
-    def hit(self, name, life, expected, reckoning):
+    def hit(self, name, life, expected, host):
         fate = "missed" if expected is None else "hit"
         if life.fate != fate or expected is None:
             self.note(f"{name}, scene", life.fate, fate, life.fate == fate)
             return
         t, number = packages.to_float(life.put.words[DISTANCE]), life.put.words[TRIANGLE]
         self.note(f"{name}, triangle", number, expected.triangle, number == expected.triangle)
-        size = reckoning.tree.largest / max(map(abs, packages.floats(life.words, DIRECTION)))
+        size = host.tree.largest / max(map(abs, packages.floats(life.words, DIRECTION)))
         self.vector(f"{name}, t", [t], [expected.t], size)
-        triangle = reckoning.tree.by_number[expected.triangle]
+        triangle = host.tree.by_number[expected.triangle]
         self.vector(f"{name}, u and v", packages.floats(life.put.words, DISTANCE + 1, 2), [expected.u, expected.v], 10)
         self.vector(f"{name}, normal", packages.floats(life.put.words, NORMAL), triangle.normal())
-        tree_hit, _ = reckoning.tree.walk(*query(life.words))
+        tree_hit, _ = host.tree.walk(*query(life.words))
         self.note(f"{name}, triangle by the tree", number, tree_hit and tree_hit.triangle,
                   tree_hit is not None and tree_hit.triangle == number)  # fmt: skip
 
@@ -88,13 +88,13 @@ class Check:
         else:
             self.note(f"{name}, walk", "hit" if best else "free", life.fate, bool(best) == (life.fate == "blocked"))
 
-    def colour(self, journey, reckoning, drawn, pixel):
+    def colour(self, journey, host, drawn, pixel):
         """The sum of what has left the chip, as the frame buffer adds it, and the picture."""
         x, y = pixel
         fixed = [sum(picture.to_fixed(one[channel]) for one in journey.contributions()) for channel in range(3)]
         linear = [value / 2**32 for value in fixed]
-        brightest = sum(ray.brightest for name, ray in reckoning.rays.items() if name.startswith("shadow"))
-        self.vector("sum of the contributions", linear, reckoning.color, brightest)
+        brightest = sum(ray.brightest for name, ray in host.rays.items() if name.startswith("shadow"))
+        self.vector("sum of the contributions", linear, host.color, brightest)
         bytes_of_sum = tuple(map(picture.to_srgb8, linear))
         self.note("image.png", drawn[y][x], bytes_of_sum, drawn[y][x] == bytes_of_sum)
 

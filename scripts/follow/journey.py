@@ -55,7 +55,7 @@ class Journey:
 
     def __init__(self, chip, pixel, texts):
         self.chip, self.texts, self.word = chip, texts, pixel[0] | pixel[1] << 16
-        self.mismatches = []  # what the waveform says in two ways
+        self.mismatches = []  # where the waveform contradicts itself
         self.compared = 0
         self.lives = {}
         exported = [number for number, ray in enumerate(chip.exports) if ray.words[packages.PIXEL] == self.word]
@@ -112,14 +112,14 @@ class Journey:
                 return
         raise FollowError(f"no launch of cast_eye has pixel {x},{y} in its tile")
 
-    def run(self, life, launch, thread, whose):
+    def run(self, life, launch, thread, of):
         """A launch, and the instructions of the thread's warp."""
         chip = self.chip
         warp, lane = thread // chip.lanes, thread % chip.lanes
         life.steps.append(Step(
             "launch", launch.cycle, "controller -> multiprocessor",
             f"launch {launch.number}: {launch.kernel}, PC {launch.pc}, {launch.threads} threads, unit {launch.unit}",
-            [f"{whose} thread is {thread}: warp {warp}, lane {lane}"]))  # fmt: skip
+            [f"{of} thread is {thread}: warp {warp}, lane {lane}"]))  # fmt: skip
         retired = chip.instructions(launch, thread)
         if not retired:
             raise FollowError(f"launch {launch.number} retires no instruction of thread {thread} in the waveform")

@@ -54,7 +54,7 @@ def text(values):
 
 
 def ray_text(words):
-    """What a ray's words say, a line for each beat of four words or so."""
+    """A ray's words as text, a line for each beat of four words or so."""
     weight = "contribution" if is_shadow(words) else "throughput"
     return [
         f"origin {text(floats(words, ORIGIN))}",

@@ -15,7 +15,7 @@ def number_text(value, _):
 
 
 def while_high(wave, valid, text):
-    """Nothing where the bus has nothing to say."""
+    """Nothing where the bus is not valid."""
     return lambda value, cycle: text(value, cycle) if wave.value(valid, cycle) else ""
 
 

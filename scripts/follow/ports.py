@@ -1,6 +1,6 @@
 """What passes the ports between the blocks of rtl/chip/rp_chip.v in a frame, in its order: launches, rays,
-intersections and contributions. Who follows whom is what the blocks promise: pools are queues, and a unit imports
-launch after launch."""
+intersections and contributions. Their order is what the blocks promise: pools are queues, and a unit imports launch
+after launch."""
 import bisect
 from dataclasses import dataclass, field
 
@@ -197,7 +197,7 @@ class Chip:
             ):
                 return launch, before - launch.first_import
         raise FollowError(
-            f"nobody has been launched for the intersection that comes in cycle {self.imports[number].cycles[0]}"
+            f"no thread has been launched for the intersection that comes in cycle {self.imports[number].cycles[0]}"
         )
 
     def instructions(self, launch, thread):

@@ -1,4 +1,4 @@
-"""The scene, and what a ray hits in it: reckoned here in double precision from the files that raypool scene writes
+"""The scene, and what a ray hits in it: computed here in double precision from the files that raypool scene writes
 (docs/use/tree-file.md), without a line of what the chip's traverser is made of."""
 import math
 import struct
@@ -98,7 +98,7 @@ class Tree:
 
     def __init__(self, data):
         if data[:8] != b"rayp-bvh" or struct.unpack_from("<I", data, 8) != (1,):
-            raise FollowError("what raypool scene --write-bvh wrote is no tree of version 1")
+            raise FollowError("what raypool scene --write-bvh wrote is not a tree of version 1")
         nodes, triangles, node_place, triangle_place = struct.unpack_from("<IIQQ", data, 40)
         self.nodes = [self.node(data, node_place + 64 * number) for number in range(nodes)]
         self.triangles = [self.triangle(data, triangle_place + 44 * place) for place in range(triangles)]
@@ -193,7 +193,7 @@ class Light:
     free: bool = True  # of a shadow ray
 
 
-class Reckoning:
+class HostPixel:
     """The light of one pixel, from the camera on: `rays` by the names of packages.name_of()."""
 
     def __init__(self, tree, materials, view, offset, size, depth):

@@ -86,7 +86,7 @@ def check_lines(options, check):
             return
     else:
         yield ""
-    yield "beside the host's reckoning:"
+    yield "beside the host's computation:"
     yield from (f"  {line}" for line in check.lines)
 
 
@@ -94,6 +94,6 @@ def last_lines(options, frame, journey, check, wrong, names):
     if options.stations or options.rays:
         return
     yield ""
-    yield (f"in the waveform {journey.compared} packages stand twice, and {len(check.lines)} values are reckoned "
+    yield (f"in the waveform {journey.compared} packages stand twice, and {len(check.lines)} values are computed "
            f"again: {len(wrong)} differ")  # fmt: skip
     yield f"pictures: {frame.out}: {', '.join(names)}"

@@ -49,7 +49,7 @@ def number(digits):
 
 
 def followed(lines, names):
-    """Of a VCD's lines those of the signals in `names`, and of what a frame is told by."""
+    """Of a VCD's lines those of the signals in `names`, and of what marks a frame."""
     lines, names, codes = iter(lines), {*ALWAYS, *names}, set()
     for line, code, name in header(lines):
         if code is None:
@@ -60,7 +60,7 @@ def followed(lines, names):
     longest = max(map(len, codes), default=0)
     for line in lines:
         kind = line[0]
-        if kind == 0x62:  # b: a bus, whose code is its end
+        if kind == 0x62:  # b: a bus; its code is the end
             place = line.rfind(b" ", -longest - 2)
             if place > 0 and line[place + 1 : -1] in codes:
                 yield line

@@ -1,4 +1,4 @@
-"""Some signals in some cycles, as a picture in the look of scripts/diagrams. What belongs to the ray is coloured."""
+"""Some signals in some cycles, as a picture in the look of scripts/diagrams. What is of the ray is coloured."""
 from diagrams.svg import NAME_WIDTH, NOTE_WIDTH, WIDTH, Picture
 
 LEFT, RIGHT, TOP, ROW, HIGH = 176, 12, 58, 30, 18

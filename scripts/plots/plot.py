@@ -190,7 +190,7 @@ def _colours(root):
 
 
 def _unwrap(parent):
-    """Groups that say nothing of their own go, which is half of the text."""
+    """Groups that add nothing go, which is half of the text."""
     children = []
     for child in parent:
         _unwrap(child)

@@ -1,5 +1,5 @@
-"""Colours and marks, the same for the same thing in every figure; those of ALUs can be told apart by the colour-blind
-(Okabe and Ito), and in every figure a mark or a word says the same as the colour.
+"""Colours and marks, the same for the same thing in every figure; those of ALUs can be distinguished by the
+colour-blind (Okabe and Ito), and in every figure a mark or a word repeats what the colour means.
 
 A plot is drawn in the light colour; in the page it becomes the variable of that name, which dark has another value of.
 """

@@ -1,3 +1,3 @@
-"""The synthesis flow: Yosys maps, OpenSTA times, reports are made from what they say.
-docs/use/synthesis.md explains the results.
+"""The synthesis flow: Yosys maps, OpenSTA times, reports are made from their output. docs/use/synthesis.md explains the
+results.
 """

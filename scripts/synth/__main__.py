@@ -214,7 +214,7 @@ def parser():
             command.add_argument("--prove", action="store_true", help="prove blocks equal to their RTL")
         if name == "replay":
             command.add_argument(
-                "--break", dest="break_number", type=int, default=0, help="swap a cell first: must be noticed"
+                "--break", dest="break_number", type=int, default=0, help="swap a cell first: must be detected"
             )
         if name == "growth":
             command.add_argument("--plan", help="what to synthesise, instead of constraints/growth.json")

@@ -43,7 +43,7 @@ def text_of(texts, base):
 
 
 def defines(gated):
-    """The Verilog that is synthesised: Booth trees in place of products; rp_free_running.vh tells what clock gates
+    """The Verilog that is synthesised: Booth trees in place of products; rp_free_running.vh describes what clock gates
     change.
     """
     return "-DSYNTHESIS" if gated else "-DSYNTHESIS -DNO_CLOCK_GATES"
@@ -79,7 +79,7 @@ def ask(*arguments):
 
 
 def configuration(name, units=0):
-    """The Verilog parameters of a configuration, as raypool says them: of the unit, or of a chip of so many units."""
+    """The Verilog parameters of a configuration, as raypool prints them: of the unit, or of a chip of so many units."""
     chip = ["--chip", "--units", str(units)] if units else []
     return dict(line.split("=") for line in ask(name, "--verilog-parameters", *chip).split())
 

@@ -10,7 +10,7 @@ class SynthError(Exception):
 
 
 def need(tool, package):
-    """The path of a tool, or the sentence that says which Debian package has it."""
+    """The path of a tool, or the sentence that names its Debian package."""
     path = shutil.which(tool)
     if path is None:
         raise SynthError(f"{tool} was not found: install the Debian package {package} (scripts/setup.sh synth)")

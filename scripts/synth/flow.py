@@ -18,7 +18,7 @@ from .netlist import Netlist
 # Rounds of mapping for speed what lies on failing paths; how many there are at most where the user wants more.
 CLOSURE_ROUNDS = 4
 MOST_ROUNDS = 8
-# Failing end points whose paths are looked at in a round.
+# Failing end points that have their paths looked at in a round.
 PATHS_A_ROUND = 60
 # What a kind of block must save to be tried with a lower effort again, as a share of all logic.
 WORTH_TRYING = 0.0005
@@ -112,8 +112,8 @@ def open_design(options):
 
 
 def lock(folder):
-    """Until this program ends nobody else has the folder: two would write over each other's netlist. Who has waited
-    finds the report of the one before."""
+    """Until this program ends no other one has the folder: two would write over each other's netlist. One that
+    has waited finds the report of the one before."""
     folder = os.path.realpath(folder)
     if folder in LOCKS:
         return
@@ -156,7 +156,7 @@ def prepare(design):
     work = os.path.join(design.folder, "work")
     os.makedirs(work, exist_ok=True)
     design.fo4_ns = timing.measure_fo4(design.library, work)
-    # A library that says nothing else gets the default library's clock, counted in its own FO4.
+    # A library without a clock of its own gets the default library's, counted in its own FO4.
     default = 40.0 * design.fo4_ns
     design.clock_ns = design.options.clock_ns or design.library.setup.get("clock_ns") or round(default, 3)
     design.kinds = elaborate.tree(design.parameters, work, design.top, gated=bool(design.library.clock_gate))
@@ -165,7 +165,7 @@ def prepare(design):
 
 def mapper_of(design):
     options = design.options
-    # Who wants more rounds than there are has the time.
+    # A user with more rounds than usual has the time.
     return mapping.Mapper(design.library, BUILD, design.clock_ns, options.jobs, options.rounds > CLOSURE_ROUNDS)
 
 
@@ -282,7 +282,7 @@ def win_back(design, work, slack):
 
 
 def close_timing(design, work, slack):
-    """Maps for speed what lies on failing paths, round by round. A round can lose: a block that is mapped anew drives
+    """Maps for speed what lies on failing paths, round by round. A round can lose: a block that is mapped again drives
     its neighbours otherwise. So the fastest netlist stays, not the last one.
     """
     efforts = dict(design.efforts)

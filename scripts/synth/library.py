@@ -42,10 +42,10 @@ def text_of(path):
         if path == known[DEFAULT]["liberty"]:
             hint = f"{path}: no such Liberty file: {known[DEFAULT]['where']}"
         elif path in known:
-            hint = f"LIBERTY={path}: say the file, the project ships no library; {known[path]['where']}"
+            hint = f"LIBERTY={path}: name the file, the project ships no library; {known[path]['where']}"
         else:
             names = ", ".join(known)
-            hint = f"LIBERTY={path}: no such Liberty file; LIBERTY=NAME says where that of {names} can be had"
+            hint = f"LIBERTY={path}: no such Liberty file; LIBERTY=NAME tells where to get that of {names}"
         raise SynthError(hint) from None
     except (OSError, EOFError, zlib.error) as error:
         raise SynthError(f"LIBERTY={path}: the Liberty file cannot be read ({error})") from error
@@ -83,7 +83,7 @@ class Library:
             **{place: pins * inverter_pf for place, pins in LOADS.items()},
             **{place: ff / 1000 for place, ff in self.setup.get("loads_ff", {}).items()},
         }
-        # What they say, wherever they lie.
+        # Their content, wherever they lie.
         said = {k: v for k, v in self.setup.items() if k not in ("liberty", "verilog", "where")}
         self.digest = hashlib.sha256((self.text + json.dumps(said, sort_keys=True)).encode()).hexdigest()
 
@@ -95,7 +95,7 @@ class Library:
         return os.path.basename(self.path).removesuffix(".gz").removesuffix(".lib"), {}
 
     def _name_cells(self):
-        """Which cells are used, and for what; what no set-up says is found by its function."""
+        """Which cells are used, and for what; what no set-up names is found by its function."""
         setup = self.setup
         self.clock_gate = setup.get("clock_gate")
         patterns = setup.get("avoid", [])

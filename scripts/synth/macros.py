@@ -7,8 +7,8 @@ from . import liberty
 from .errors import SynthError
 from .library import text_of
 
-# A memory is a macro where one is wide and deep enough and this share of its bits is used; else it is priced as
-# constraints/memories.json says.
+# A memory is a macro where one is wide and deep enough and this share of its bits is used; else it is priced by
+# constraints/memories.json.
 USED_SHARE = 0.5
 
 

@@ -19,8 +19,8 @@ LOGIC_SHARE = 0.7
 # its gates are sized for this share, and for the other one where that is not enough.
 FAST_SHARE = 0.4
 LAST_SHARE = 0.3
-# A block whose slowest logic takes no more than this share is fast enough, as far as
-# one can see while it is mapped alone.
+# A block is fast enough if its slowest logic takes no more than this share, as far as one can see while it is mapped
+# alone.
 ACCEPTED_SHARE = 0.8
 # The limit that `map` gets in its own units, in targets.
 RELAXED = 2.15
@@ -34,7 +34,7 @@ def versions():
 
 # Ways of mapping: for area, for speed with area won back, for speed, for few levels before that, and with more buffers,
 # each for fewer gates, after one or two searches for few levels. Each ends with buffers and drive strengths for the
-# target {d}, and says its delay. What `map` takes for a delay is some two times that: with {d} as its limit it never
+# target {d}, and prints its delay. What `map` takes for a delay is some two times that: with {d} as its limit it never
 # wins area back.
 _SIZING = "topo;buffer,-c;upsize,-D,{d};dnsize,-D,{d};stime"
 _SPREAD = _SIZING.replace("buffer,-c", "buffer,-c,-N,6")
@@ -187,8 +187,8 @@ write_json {result}
         os.remove(stem + ".ys")
 
     def map_one(self, kind, effort):
-        """Takes the first way whose delay is within the accepted share of the period, else the fastest;
-        of a fast effort the fastest.
+        """Takes the first way with a delay within the accepted share of the period, else the fastest; of a fast effort
+        the fastest.
         """
         final = self.path(kind, effort)
         # Two runs may map the same kind at a time: each works on files of its own.

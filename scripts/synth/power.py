@@ -47,7 +47,7 @@ def measure(design, folder):
     passed, text = replay.lockstep(design, library, folder, KERNEL, engine="rtl")
     if not passed:
         raise SynthError(
-            "the netlist did not draw the frame whose activity was to be measured"
+            "the netlist did not draw the frame that is needed to measure its activity"
             + (f" as the model does:\n{text.strip()}" if design.options.units else "")
         )
     toggles, accesses, cycles = {}, {}, 0
@@ -69,7 +69,7 @@ def measure(design, folder):
 
 @dataclass
 class Part:
-    """A block whose cells have one activity: all below it too, or its own gates alone."""
+    """A block with one activity for its cells: all below it too, or its own gates alone."""
 
     path: tuple
     identity: str
@@ -109,7 +109,7 @@ def parts(design):
 
 
 def part_of(found, path):
-    """The part that a block belongs to."""
+    """The part that has a block."""
     words = tuple(path.split("/")) if path else ()
     while words not in found:
         words = words[:-1]

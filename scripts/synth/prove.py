@@ -202,7 +202,7 @@ write_aiger -zinit {stem}.aig
 
 
 def prove(design, only=None):
-    """All kinds of block, or those whose module is in `only`. Returns {kind's name: verdict}."""
+    """All kinds of block, or those with a module in `only`. Returns {kind's name: verdict}."""
     folder = os.path.join(design.folder, "proofs")
     os.makedirs(folder, exist_ok=True)
     cells = design.library.usable_file(os.path.join(folder, "libraries"))

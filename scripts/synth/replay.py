@@ -38,7 +38,7 @@ def library_modules(path):
 def tables(design, folder):
     """The truth table of every output of every cell in use, by (cell, output): (inputs, table, whether it is a
     register). From the library's own Verilog; where that uses tables (UDP), which Yosys does not read, or is missing,
-    from the Liberty file. Says how many came from each.
+    from the Liberty file. Reports how many came from each.
     """
     used = [
         design.library.cells[c]
@@ -374,7 +374,7 @@ def replay(design, break_number=0):
         if not passed and what:
             said = [line.strip() for line in text.splitlines() if "differ" in line or "look at:" in line]
             say(
-                f"replay: {words} noticed it: "
+                f"replay: {words} detected it: "
                 + "; ".join(said[:1] + [line for line in said if line.startswith("look at:")])
             )
             return

@@ -16,7 +16,7 @@ THESIS_MM2 = 0.537
 SIMULATED_MHZ = 1000
 # A stage should take no more than this many times the median one.
 SLOW_STAGE = 4 / 3
-# Lanes whose size has a goal in kGE: (block, name, [(parameters, goal)]), the first that fits.
+# Lanes with a goal for their size in kGE: (block, name, [(parameters, goal)]), the first that fits.
 GOALS = [
     ("float_lane", "Flt lane", [({"FMA": "1"}, 14.0), ({"SUBNORMALS": "0"}, 12.0), ({"SUBNORMALS": "1"}, 10.5)]),
     ("slow_lane", "Slw lane", [({"SLOW_UNIT": "0"}, 28.0), ({"SLOW_UNIT": "2"}, 15.0)]),
@@ -273,7 +273,7 @@ def load_run(path, config, units=0):
         raise SynthError(f"RUN={path}: drawn by a chip of {run.get('units')} units, but this one has {units}")
     if units and run.get("traverser") != "hardware":
         raise SynthError(
-            f"RUN={path}: drawn with traverser {run.get('traverser')}, whose area nobody knows; draw it with "
+            f"RUN={path}: drawn with traverser {run.get('traverser')}, which has no known area; draw it with "
             "TRAVERSER=hardware"
         )
     return run

@@ -10,7 +10,7 @@ folder=$(mktemp -d)
 log=$folder/log
 trap 'rm -rf "$folder"' EXIT
 
-# A folder that nobody can make gets one sentence that names BUILD=, and make's own line.
+# A folder that cannot be made gets one sentence that names BUILD=, and make's own line.
 if make run BUILD=/proc/none > "$log" 2>&1 || [ "$(wc -l < "$log")" != 2 ] ||
   ! grep -q 'build folder "/proc/none" cannot be written: choose another one with BUILD=' "$log"; then
   echo "FAILED: a build folder that cannot be made:"
@@ -19,7 +19,7 @@ if make run BUILD=/proc/none > "$log" 2>&1 || [ "$(wc -l < "$log")" != 2 ] ||
 fi
 echo "ok: a build folder that cannot be made"
 
-# What compilers say is shown, and how far it is only where a line can be rewritten or time passes.
+# What compilers print is shown, and the progress only where a line can be rewritten or time passes.
 mkdir "$folder/bin"
 printf '#!/bin/sh\nprintf "[1/2] Building a\\nx.cpp:1: error: e\\n[2/2] Linking b\\n"\nexit 1\n' > "$folder/bin/cmake"
 chmod +x "$folder/bin/cmake"

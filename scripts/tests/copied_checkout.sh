@@ -37,16 +37,16 @@ printf '#include <cstdio>\nint main() { std::puts(WHERE " one"); }\n' > "$old/si
 built() {
   make -C "$1" program "${@:2}" > "$log" 2>&1 || fail "make program in $1 ends with an error"
 }
-says() {
+prints() {
   local text
   text=$("${3:-$1/build}/raypool")
-  [ "$text" = "$2" ] || fail "the program of $1 says '$text', and not '$2'"
+  [ "$text" = "$2" ] || fail "the program of $1 prints '$text', and not '$2'"
 }
 # Names, times and contents of all files of a folder.
 state() { (cd "$1" && find . -type f -printf '%p %T@ ' -exec sha256sum {} \;) | sort; }
 
 built "$old"
-says "$old" "$old one"
+prints "$old" "$old one"
 (cd / && "$old/scripts/build.sh" "$old/build" raypool) > "$log" 2>&1 || fail "build.sh called from another folder"
 mkdir -p "$old/build/out/mine" "$old/build/units/1w1c"
 echo picture > "$old/build/out/mine/image.png"
@@ -68,8 +68,8 @@ for kind in copied renamed; do
   fi
   built "$new"
   [ "$(grep -c "was made for $old: it is configured and built again for $new" "$log")" = 1 ] ||
-    fail "the $kind checkout does not say once that it is configured again"
-  says "$new" "$new two"
+    fail "the $kind checkout does not report once that it is configured again"
+  prints "$new" "$new two"
   for file in out/mine/image.png units/1w1c/libraypool_unit.so; do
     [ -s "$new/build/$file" ] || fail "the $kind checkout lost $file"
   done
@@ -85,10 +85,10 @@ state "$folder/gone" | diff "$folder/before" - > "$log" || fail "the old checkou
 # A build folder elsewhere: of two checkouts in turn, and moved.
 built "$folder/copied" "BUILD=$folder/elsewhere"
 built "$folder/renamed" "BUILD=$folder/elsewhere"
-says "$folder/renamed" "$folder/renamed two" "$folder/elsewhere"
+prints "$folder/renamed" "$folder/renamed two" "$folder/elsewhere"
 mv "$folder/elsewhere" "$folder/moved"
 built "$folder/renamed" "BUILD=$folder/moved"
-says "$folder/renamed" "$folder/renamed two" "$folder/moved"
+prints "$folder/renamed" "$folder/renamed two" "$folder/moved"
 echo "ok: a build folder elsewhere"
 
 # One of another project is left alone.

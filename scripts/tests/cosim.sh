@@ -18,14 +18,14 @@ import json, sys
 machines = json.load(open(sys.argv[1]))["machines"]
 print(*(machine["programs"] for machine in machines), "of", sum(machine["programs"] for machine in machines))
 ' "$folder/set.json"
-expect "the set lacks no feature, and says which values no machine has" 0 "no machine has (make configurations" \
+expect "the set lacks no feature, and lists the values that no machine has" 0 "no machine has (make configurations" \
   "${cosim[@]}" --programs 4
 "${cosim[@]}" --programs 4 > "$folder/set.txt"
 expect "each machine has its column" 0 "4 x 2w1c_units" grep "^coverage" "$folder/set.txt"
-expect "no feature is said to be missing" 1 "" grep "not tried" "$folder/set.txt"
-expect "fewer programs than machines leave features out, which is said" 0 \
+expect "no feature is reported as missing" 1 "" grep "not tried" "$folder/set.txt"
+expect "fewer programs than machines leave features out, which is reported" 0 \
   "not tried, as no machine has them: several units" "${cosim[@]}" --programs 2
-expect "one machine says what it lacks" 0 "not tried, as 2w2c_small lacks them: several units, triples" \
+expect "what one machine lacks is listed" 0 "not tried, as 2w2c_small lacks them: several units, triples" \
   "${cosim[@]}" --config configs/cosim/2w2c_small.json --programs 2
 read -r file units <<< "${machines[2]}"
 expect "several units of one machine lack less" 0 "not tried, as 4 x 2w1c_units lacks them: several lanes, triples" \

@@ -21,7 +21,7 @@ for size in lanes=2 triangle_pipes=1 rays=16 cache_banks=2 {node,triangle}_cache
 done
 
 # draw SCENE SIZE FOLDER SET: the picture, and what became of the rays, as every engine has it; those with time agree in
-# all but who has drawn, and how fast.
+# all but which engine has drawn, and how fast.
 draw() {
   local player engine boundary inside
   [ "$whole" != chip ] || RAYPOOL=$raypool scripts/unit.sh "$config" --units "$units" --boundary chip --set "$4"
@@ -35,7 +35,7 @@ draw() {
       { echo "FAILED: $player and native count rays differently"; exit 1; }
   done
   for player in "${timed[@]}"; do
-    # Of a chip in Verilog nobody sees what its traverser does inside.
+    # Of a chip in Verilog the traverser's inside cannot be seen.
     inside=()
     [ "$player" != rtl-chip ] || inside=(traversal ceilings)
     figures "$3/model" "${inside[@]}" > "$folder/model.json"

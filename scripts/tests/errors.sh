@@ -74,7 +74,7 @@ refuses_sim "empty PLY" "empty.ply: the file is empty" --scene "$folder/empty.pl
 refuses_sim "cut-off glTF" "cut.glb: the file is cut off" --scene "$folder/cut.glb"
 refuses_sim "named camera of a scene without" "--camera is for glTF" --scene "$folder/good.obj" --camera Front
 refuses_sim "eye of two numbers" "--eye is '1,2'.*three numbers" --eye 1,2
-refuses_sim "eye that is no number" "--eye is '1,nan,3'.*-1e" --eye 1,nan,3
+refuses_sim "eye that is not a number" "--eye is '1,nan,3'.*-1e" --eye 1,nan,3
 refuses_sim "light too far away" "--light is '0,2e9,0'.*1e" --light 0,2e9,0
 refuses_sim "looking at the eye" "look at .1, 2, 3., where its eye is" --eye 1,2,3 --look-at 1,2,3
 refuses_sim "looking along up" "up is parallel" --eye 1,2,3 --look-at 1,5,3
@@ -82,7 +82,7 @@ refuses_sim "looking along up at an OBJ" "good.obj: .*up is parallel" --scene "$
   --look-at 1,5,3
 refuses_sim "up without a direction" "up is zero" --up 0,0,0
 refuses_sim "field of view of a half-circle" "--fov is '180'.*1 to 170" --fov 180
-refuses_sim "field of view that is no number" "--fov is 'wide'" --fov wide
+refuses_sim "field of view that is not a number" "--fov is 'wide'" --fov wide
 refuses_sim "missing view" "none.json" --view "$folder/none.json"
 refuses_sim "3 warps in a file" "warps.* 3.*power of two from 1 to 32" --config "$folder/warps.json"
 refuses_sim "3 warps by name" "3.*power of two from 1 to 32" --config 3w8c
@@ -213,7 +213,7 @@ refuses "saxpy of nothing" "--n is 0: saxpy takes a size from 1 to" "$raypool" r
 refuses "no cycles" "--cycles" "$raypool" run saxpy --cycles 0
 # Some 11 million cycles in which nothing is transferred: a limit that was given is the limit.
 counts=("$raypool" run "$folder/count.asm" --config 4w4c --threads 4 --quiet)
-refuses "silent program without a limit" "for 10000000 cycles .* say how long with --cycles; .*unit 0: running" \
+refuses "silent program without a limit" "for 10000000 cycles .* set a limit with --cycles; .*unit 0: running" \
   "${counts[@]}"
 refuses "silent program with a limit" "the limit of 2000000 cycles has passed; " "${counts[@]}" --cycles 2000000
 if "${counts[@]}" --cycles 20000000 > "$folder/stdout" 2>&1 && grep -q ' cycles$' "$folder/stdout"; then
@@ -285,7 +285,7 @@ if [ "$before" != "$(cd "$folder/out" && ls -A && cksum ./*)" ]; then
 fi
 
 sim=("$raypool" sim --engine functional --size 8x8 --out "$folder/out" --quiet)
-# What is drawn, but hardly as it was meant, is told.
+# What is drawn, but hardly as it was meant, is reported.
 warns() {
   local what=$1 pattern=$2; shift 2
   "$@" > "$folder/stdout" 2> "$folder/stderr" && [ "$(wc -l < "$folder/stderr")" = 1 ] &&

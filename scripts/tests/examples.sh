@@ -1,5 +1,5 @@
 #!/bin/bash
-# examples/*.asm print what their heads say, on every engine: scripts/tests/examples.sh RAYPOOL
+# examples/*.asm print what their heads show, on every engine: scripts/tests/examples.sh RAYPOOL
 # A head holds "#   $ raypool ..." and below it, further in, lines of the output. Needs the
 # Verilated unit of 4w4c beside RAYPOOL.
 set -eu -o pipefail
@@ -19,7 +19,7 @@ for file in examples/*.asm; do
       { echo "FAILED: exit code $? of raypool $command --engine $engine" >&2; exit 1; }
     while IFS= read -r line; do
       grep -qE "^ *$line$" "$folder/output" ||
-        { cat "$folder/output"; echo "FAILED: $engine does not print '$line', as $file says" >&2; exit 1; }
+        { cat "$folder/output"; echo "FAILED: $engine does not print '$line', which $file promises" >&2; exit 1; }
       lines=$((lines + 1))
     done < "$folder/expected"
     runs=$((runs + 1))

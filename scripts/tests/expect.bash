@@ -2,7 +2,7 @@
 
 failures=0
 
-# expect WHAT STATUS TEXT COMMAND...: the command ends with the status, and says the text.
+# expect WHAT STATUS TEXT COMMAND...: the command ends with the status, and prints the text.
 expect() {
   local what=$1 status=$2 text=$3 said ended
   shift 3

@@ -2,8 +2,8 @@
 """make follow on small frames: scripts/tests/follow_test.py RAYPOOL [TEST]... Needs the Verilated chip of 4w4c with
 waveforms beside it.
 
-The journey is whole, and all that can be reckoned otherwise is the same; a word that is altered anywhere on the way is
-noticed; what cannot be followed gets a sentence.
+The journey is whole, and all that the host can compute itself is the same; a word that is altered anywhere on the way
+is detected; what cannot be followed gets a sentence.
 """
 import contextlib
 import io
@@ -112,8 +112,8 @@ class Tour(Case):
         self.assertIn("offset", said)
 
 
-class Notices(Case):
-    """A run whose waveform has only what is read, and what happens when a word of it is another one."""
+class Detects(Case):
+    """A run with a waveform of only what is read, and what happens when a word of it is another one."""
 
     @classmethod
     def setUpClass(cls):
@@ -129,7 +129,7 @@ class Notices(Case):
         cls.temporary.cleanup()
 
     def run_with(self, lines, change=None):
-        """Of a run whose waveform is this."""
+        """Of a run with this waveform."""
         for name in ("report.json", "image.png"):
             shutil.copy(self.run_folder / name, self.folder / name)
         (self.folder / "waves.vcd").write_bytes(b"".join(lines))
@@ -253,7 +253,7 @@ class Notices(Case):
 
         self.differs("cycles of the frame", self.lines, change)
 
-    def test_a_ray_of_nobody(self):
+    def test_a_ray_of_no_pixel(self):
         word = self.ray("eye").words[7]
         lines = self.altered([b"export_data"], word, word + 64)
         self.refused("pixel 5,2 has 0 eye rays in the waveform", *self.run_with(lines))
@@ -279,7 +279,7 @@ class Refusals(Case):
     def test_pixels(self):
         self.refused("the picture has 32x24 pixels, numbered from 0", "--pixel", "32,0")
         self.refused("the picture has 8x6 pixels, numbered from 0", "--pixel", "0,6", "--size", "8x6")
-        self.refused("say it as X,Y", "--pixel", "middle")
+        self.refused("give it as X,Y", "--pixel", "middle")
 
     def test_what_raypool_refuses(self):
         self.refused("sphere.obj", "--scene", "sphere.obj", "--out", str(self.folder))
@@ -290,7 +290,7 @@ class Refusals(Case):
         self.refused("--ray shadow7: this pixel has eye", "--ray", "shadow7", *SMALL, "--out", str(self.folder))
 
     def test_folders(self):
-        self.refused("report.json: this is no report", "--from", str(self.folder))
+        self.refused("report.json: this is not a report", "--from", str(self.folder))
         (self.folder / "report.json").write_text('{"size": {"width": 8, "height": 6}}')
         self.refused("there is neither waves.fst nor waves.vcd", "--from", str(self.folder), *SMALL)
         (self.folder / "waves.fst").write_text("no waveform")

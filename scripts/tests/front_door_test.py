@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What somebody new reads first: the README is one screen, `make help` too, and nothing that they name is missing."""
+"""What a newcomer reads first: the README is one screen, `make help` too, and nothing that they name is missing."""
 import pathlib
 import re
 import shutil
@@ -92,7 +92,7 @@ class Help(unittest.TestCase):
 
 
 class Values(unittest.TestCase):
-    """A copy of the Makefile whose program prints its words."""
+    """A copy of the Makefile with a program that prints its words."""
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())

@@ -1,7 +1,7 @@
 #!/bin/bash
 # A difference is run again with a look inside the RTL, and the report names the file:
 # scripts/tests/inspect.sh RAYPOOL FOLDER
-# FOLDER has the machine 2w2c with the designers' mistakes, as python3 -m faults builds it.
+# FOLDER has the machine 2w2c with the seeded faults, as python3 -m faults builds it.
 set -u -o pipefail
 raypool=$(realpath "$1") machine=$(realpath "$2")/catalogue/2w2c/libraypool_unit.so
 cd "$(dirname "$0")/../.." || exit 1
@@ -11,11 +11,11 @@ failures=0
 on=(--config tb/mutants/2w2c.json --unit-library "$machine" --quiet)
 twice='raypool: lockstep difference in unit: .*, in cycle [0-9]+: running again'
 
-# differs WHAT MISTAKE PATTERN COMMAND...: with the mistake the command ends with 2, prints
-# nothing but one report, and that matches.
+# differs WHAT FAULT PATTERN COMMAND...: with the fault the command ends with 2, prints nothing but one report, and that
+# matches.
 differs() {
-  local what=$1 mistake=$2 pattern=$3 code=0; shift 3
-  RAYPOOL_FAULT=$mistake timeout 120 "$raypool" "$@" > "$folder/stdout" 2> "$folder/stderr" || code=$?
+  local what=$1 fault=$2 pattern=$3 code=0; shift 3
+  RAYPOOL_FAULT=$fault timeout 120 "$raypool" "$@" > "$folder/stdout" 2> "$folder/stderr" || code=$?
   if [ "$code" = 2 ] && [ ! -s "$folder/stdout" ] && [ "$(grep -c 'look at: ' "$folder/stderr")" = 1 ] &&
     grep -qzE -e "$pattern" "$folder/stderr"; then
     echo "ok: $what"

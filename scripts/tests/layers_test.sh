@@ -13,7 +13,7 @@ touch "$folder/studies/sweep.py" "$folder/scripts/synth.py"
 echo '#include "chip/chip.hpp"' > "$folder/studies/fit/needs.cpp"
 echo 'import synth' > "$folder/studies/pareto.py"
 layers() { scripts/layers.py "$folder"; }
-# wrong FILE TEXT WHAT: with this file the check fails and says WHAT.
+# wrong FILE TEXT WHAT: with this file the check fails and prints WHAT.
 wrong() {
   echo "$2" > "$folder/$1"
   expect "$1 with $2" 1 "$3" layers

@@ -1,6 +1,6 @@
 #!/bin/bash
-# scripts/lint.sh does the kinds of checks that it is asked for, says what is wrong, and refuses a kind that it does not
-# know. Works on a copy with files that are wrong in one way each.
+# scripts/lint.sh does the kinds of checks that it is asked for, reports what is wrong, and refuses a kind that it does
+# not know. Works on a copy with files that are wrong in one way each.
 set -u -o pipefail
 cd "$(dirname "$0")/../.." || exit 1
 folder=$(mktemp -d)

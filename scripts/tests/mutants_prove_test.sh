@@ -1,6 +1,6 @@
 #!/bin/bash
-# `python3 -m faults prove` proves a mutant equivalent that is, and neither one whose output differs nor one whose next
-# state does: a unit of one register with four faults, as `python3 -m faults mutants` leaves them.
+# `python3 -m faults prove` proves a mutant equivalent that is, and neither one with another output nor one with another
+# next state: a unit of one register with four faults, as `python3 -m faults mutants` leaves them.
 set -u -o pipefail
 cd "$(dirname "$0")/../.." || exit 1
 folder=$(mktemp -d)
@@ -12,14 +12,14 @@ module rp_compute_unit (input clk_i, input [3:0] a_i, input [3:0] b_i, output [3
   // 1: the same by other gates; 2: one bit of the output, for one pair of operands.
   wire [3:0] sum = mutant_i == 3'd1 ? a_i - ~b_i - 4'd1 : a_i + b_i;
   assign sum_o = sum ^ {3'd0, mutant_i == 3'd2 && a_i == 4'd9 && b_i == 4'd14};
-  // 3: the next state, when the old one is 11; 4: a fault whose bit is masked by what it meets.
+  // 3: the next state, when the old one is 11; 4: a fault in a bit that is masked by what it meets.
   always @(posedge clk_i) state_q <= mutant_i == 3'd3 && state_q == 4'd11 ? sum : sum ^ state_q;
   assign state_o = state_q & ~(state_q & {3'd0, mutant_i == 3'd4 && !state_q[0]});
 endmodule
 END
 failures=0
 
-# expect WHAT STATUS SAID NUMBER...: the proof of these mutants ends with the status, and says just this.
+# expect WHAT STATUS SAID NUMBER...: the proof of these mutants ends with the status, and prints just this.
 expect() {
   local what=$1 status=$2 wanted=$3 said ended
   shift 3
@@ -29,7 +29,7 @@ expect() {
     echo "ok: $what"
   else
     failures=$((failures + 1))
-    echo "FAILED: $what: ended with $ended, not $status, and says: $said"
+    echo "FAILED: $what: ended with $ended, not $status, and prints: $said"
   fi
 }
 

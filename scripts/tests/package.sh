@@ -31,7 +31,7 @@ gzip -dc "$folder/prefix/share/man/man1/raypool.1.gz" | cmp - <("$raypool" man) 
 cmp "$folder/prefix/share/bash-completion/completions/raypool" <("$raypool" completion bash) ||
   fail "another completion"
 
-# Without a unit it says how to make one; with it, it runs.
+# Without a unit it names the command that makes one; with it, it runs.
 code=0
 "$raypool" sim --scene cornell --size 8x8 --config 4w4c --engine lockstep 2> "$folder/error" || code=$?
 [ "$code" = 1 ] && grep -qF "build it with raypool unit --config 4w4c" "$folder/error" ||

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The JSON Schemas say what the program accepts and writes:
-scripts/tests/schemas_test.py RAYPOOL [--only CLASS] [ENGINE...]
+"""The JSON Schemas describe what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [--only CLASS]
+[ENGINE...]
 
 Checked-in configurations and views, and a report of each ENGINE (default: those without a Verilated unit), are valid;
 what raypool refuses, and what it takes the schema takes, at both ends of every range; a field of what is written that
@@ -56,7 +56,7 @@ class Agreement(unittest.TestCase):
         done = raypool(*[str(path) if word == "FILE" else word for word in command])
         errors = [error.message for error in validator(name).iter_errors(document)]
         self.assertIn(done.returncode, (0, 1), done.stderr)
-        text = f"{document}: raypool says '{done.stderr.strip()}', the schema {errors}"
+        text = f"{document}: raypool prints '{done.stderr.strip()}', the schema {errors}"
         self.assertEqual(done.returncode == 0, not errors, text)
         return done.returncode == 0
 
@@ -144,7 +144,7 @@ class Agreement(unittest.TestCase):
 
 
 class Written(unittest.TestCase):
-    """What the schema of a written document must notice."""
+    """What the schema of a written document must detect."""
 
     def fields(self, value, path=()):
         for key, inner in value.items() if isinstance(value, dict) else ():
@@ -162,7 +162,7 @@ class Written(unittest.TestCase):
         return copied
 
     def refuses(self, valid, document, required, unknown):
-        """Each field of another kind, each one that `required` says missing, and the `unknown` ones."""
+        """Each field of another kind, each one that `required` names missing, and the `unknown` ones."""
         for path in self.fields(document):
             with self.subTest(path=path):
                 other = self.changed(document, path, lambda inner, key: inner.update({key: [None]}))
@@ -217,7 +217,7 @@ class Report(Written):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 report = json.loads(done.stdout)
                 errors = [f"{'.'.join(map(str, error.path))}: {error.message}" for error in valid.iter_errors(report)]
-                self.assertEqual(errors, [], f"{engine}: a new field of the report belongs into schemas/report.json")
+                self.assertEqual(errors, [], f"{engine}: a new field of the report must be in schemas/report.json")
                 self.refuses_changes(valid, report)
 
     def refuses_changes(self, valid, report):

@@ -1,6 +1,6 @@
 #!/bin/bash
 # scripts/setup.sh: silent when nothing is missing; as root installs what is missing and fetches lists only when it
-# must; else says what to run. Works on a copy with a package manager that only writes down what it is asked.
+# must; else prints what to run. Works on a copy with a package manager that only writes down what it is asked.
 set -u -o pipefail
 cd "$(dirname "$0")/../.." || exit 1
 folder=$(mktemp -d)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Mapped blocks do what their RTL says, and where a cell is another one, simulation and proof notice."""
+"""Mapped blocks do what their RTL does, and where a cell is another one, simulation and proof detect it."""
 import ctypes
 import os
 import random
@@ -88,7 +88,7 @@ class MappedBlocks(SmallBlocks):
             ports = sum(w for d, w in design.kinds["frame_port"].ports.values() if d == "output")
             counts = [value >> ports for value in values]
             self.assertEqual(set(counts), {0, 1, 2})
-            # Its first output says that there is room.
+            # Its first output is high when there is room.
             self.assertEqual([count != 2 for count in counts], [bool(value & 1) for value in values])
             with open(probes, "a", encoding="utf-8") as file:
                 file.write('public_flat_rd -module "rp_frame_port" -var "take"\n')
@@ -122,7 +122,7 @@ class MappedBlocks(SmallBlocks):
         self.assertNotEqual(self.simulated(gated, cycles)[2:], values[2:])
         self.assertEqual(set(prove.prove(gated).values()), {"different"})
 
-    def test_a_block_is_proved_and_a_swapped_cell_noticed(self):
+    def test_a_block_is_proved_and_a_swapped_cell_detected(self):
         design = small_design(self.folder, "fetch_arbiter", {"WARPS": "4", "WARP_BITS": "2"})
         self.assertEqual(set(prove.prove(design).values()), {"proved"})
         largest = max(design.netlist.modules.values(), key=lambda m: len(m.gates))

@@ -357,7 +357,7 @@ class Whole(SmallBlocks):
             json.dump({"mrays_per_second": 1.0, "config": "4w4c", "units": 1, "traverser": "static"}, file)
         self.written("run.json.gz", "not packed")
         for arguments, word in (
-            (["report", "--liberty", "/no/such.lib"], "no such Liberty file; LIBERTY=NAME says where"),
+            (["report", "--liberty", "/no/such.lib"], "no such Liberty file; LIBERTY=NAME tells where"),
             (["report", "--liberty", "sg13g2"], "IHP-Open-PDK"),
             (["report", "--liberty", "/dev/null"], "not a Liberty file"),
             (["report", "--liberty", run + ".gz"], "cannot be read"),
@@ -370,7 +370,7 @@ class Whole(SmallBlocks):
             (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
             (["report", "--config", "1w1c", "--chip", "--units", "3"], "CUS=3: a chip has 1, 2 or 4 compute units"),
             (["report", "--config", "1w1c", "--rounds", "9"], "ROUNDS=9: 0 to 8"),
-            (["report", "--config", "4w4c", "--chip", "--run", run], "drawn with traverser static, whose area nobody"),
+            (["report", "--config", "4w4c", "--chip", "--run", run], "drawn with traverser static, which has no known"),
             (["report", "--config", "4w4c", "--chip", "--units", "4", "--run", run], "of 1 units, but this one has 4"),
             (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
             (["growth", "--plan", run], "not a plan"),
@@ -433,13 +433,13 @@ class Whole(SmallBlocks):
         self.assertEqual((rows[unit]["flip_flops"], rows[launches]["flip_flops"]), (2 * alone, 2 * alone))
         self.assertIn(made["timing"]["to_block"], ("frame_port", launches))
         self.assertGreater(rows["frame_port"]["flip_flops"], 0)
-        # The thesis' area is that of a unit; of the chip every block is told, however small.
+        # The thesis' area is that of a unit; of the chip every block is reported, however small.
         printed = report.table(made)
         self.assertNotIn("thesis", printed)
         self.assertTrue(printed.startswith("1w1c-chip-2cu "))
         told = {line.split()[0] for line in printed.splitlines()[2:] if line.strip()}
         self.assertLessEqual(first | {"chip"}, told)
-        # A unit whose instances were counted once would be noticed.
+        # A unit with its instances counted once would be detected.
         rows["multiprocessor"]["memory_um2"] /= 2
         with self.assertRaisesRegex(SynthError, "add up"):
             report.check(made)

@@ -62,7 +62,7 @@ for kind in s.obj s.mtl s.ply s.gltf a.asm a.hex c.json view.json report.json; d
     if use "$kind" "$folder/$form" > "$folder/log" 2>&1 && cmp "$folder/log" "$folder/wanted"; then
       echo "ok: $kind, $form"
     else
-      failed "$kind, $form, says what the plain one says"
+      failed "$kind, $form, must print what the plain one prints"
     fi
   done
   for encoding in UTF-16 UTF-16LE UTF-16BE; do

@@ -18,7 +18,7 @@ std::optional<std::string> AnswerWatch::waits() const {
   std::string all;
   for (const Port& port : ports_) {
     if (port.asked.empty()) continue;
-    all += fmt::format("{}{} waits for {} lines of the memory, since cycle {}", all.empty() ? "" : ", ", port.who,
+    all += fmt::format("{}{} waits for {} lines of the memory, since cycle {}", all.empty() ? "" : ", ", port.requester,
                        port.asked.size(), port.asked.front());
   }
   return all.empty() ? std::nullopt : std::optional(all);
@@ -36,7 +36,7 @@ std::string AnswerWatch::late() const {
   return fmt::format(
       "{} waits at port {} since cycle {} for a line of the memory, and none takes more than {} cycles: the memory has "
       "lost a request or an answer",
-      port->who, port->name, port->asked.front(), limit_);
+      port->requester, port->name, port->asked.front(), limit_);
 }
 
 bool AnswerWatch::look(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs) {

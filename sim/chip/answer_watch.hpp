@@ -1,4 +1,4 @@
-// Who on a board waits for an answer of the memory, and since when: an answer that is lost would never come.
+// Watches what on a board waits for an answer of the memory, and since when: an answer that is lost would never come.
 #pragma once
 
 #include <array>
@@ -27,10 +27,10 @@ class AnswerWatch {
     return 2 * before * (chip.memory_latency + uint64_t{raypool::MemoryLine::kBeats} * chip.memory_cycles_per_beat);
   }
 
-  /// Who waits for a line, and since when, in a few words; nobody may.
+  /// What waits for a line, and since when, in a few words; none: nothing does.
   std::optional<std::string> waits() const;
 
-  /// Once in a cycle: true if somebody has waited for too long.
+  /// Once in a cycle: true if a requester has waited for too long.
   bool clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs) {
     const bool moves = outputs.memory_request_valid || inputs.memory_beat_valid || outputs.tree_response_valid ||
                        outputs.traverser.tree_request_valid || outputs.device.memory_request_valid ||
@@ -39,13 +39,13 @@ class AnswerWatch {
   }
   /// Cycle from which on clock() is true if no answer comes; before, a cycle without any needs no call.
   uint64_t due() const { return due_; }
-  /// Who that is, in a sentence.
+  /// Which requester that is, in a sentence.
   std::string late() const;
 
  private:
   // A port at which lines are asked for, and come back in order.
   struct Port {
-    const char *who, *name;
+    const char *requester, *name;
     std::deque<uint64_t> asked{};  // cycles, the oldest first
     uint32_t beats = 0;            // of the oldest line, that have come
 

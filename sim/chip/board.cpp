@@ -229,7 +229,7 @@ void Board::watch() {
   if (cycle_ == last_counted_) {
     throw InputError(
         fmt::format("{} cycles have passed, and after so many a performance counter of {}, of {} bits, may "
-                    "have begun anew: draw with --set counter_bits=48",
+                    "have wrapped: draw with --set counter_bits=48",
                     cycle_, options_.configuration.name, options_.configuration.counter_bits));
   }
   const bool looks = cycle_ == look_at_;
@@ -266,7 +266,7 @@ std::string Board::state() const {
   add(o.device.import_request_valid && !o.to_device.import_request_ready,
       fmt::format("unit {} waits for the intersection pool to give it a package", o.device.import_request_unit));
   add(o.device.memory_request_valid && !o.to_device.memory_request_ready,
-      "a unit's request waits for the memory port, whose queue is full");
+      "a unit's request waits for the memory port: its queue is full");
   add(o.to_device.launch_valid && !o.device.launch_ready, "the controller waits for a unit that takes a kernel");
   const bool waits_for_rays =
       cast_ >= uint64_t{options_.width} * options_.height &&
@@ -292,7 +292,7 @@ std::string Board::state() const {
       chip.intersection_pool_size, cast_, options_.width, options_.height);
 }
 
-// Of the pixels that are cast: which of them are finished nobody outside knows.
+// Of the pixels that are cast: which of them are finished cannot be seen from outside.
 void Board::show_progress() const {
   const double pixels = static_cast<double>(options_.width) * options_.height;
   options_.progress({ended_ ? 1 : std::min(1.0, static_cast<double>(cast_) / pixels), ended_ ? cycles_ : cycle_,

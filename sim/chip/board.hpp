@@ -59,7 +59,7 @@ class Board {
   void count_work(const ChipOutputs& outputs);
   uint64_t due() const;
   std::string at_cycle(const std::string& what) const;
-  /// Who waits for what.
+  /// What waits for what.
   std::string state() const;
   RayKernel kernel_at(uint32_t pc) const;
   /// The caches of a traverser inside hold what has been visited before this tile.
@@ -97,7 +97,7 @@ class Board {
   std::optional<TileWatch> tiles_;  // where tiles' costs are asked for
   uint64_t work_ = 0;               // transfers, and lines that the caches of a traverser inside give
   ProgressWatch progress_;
-  uint64_t last_counted_, look_at_;  // cycles: the last one that counters tell; the watchdog's next one
+  uint64_t last_counted_, look_at_;  // cycles: the last one that counters can count; the watchdog's next one
   uint64_t watch_at_ = 0;            // of these and others the next one
 };
 

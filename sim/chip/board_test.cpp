@@ -141,20 +141,20 @@ TEST(Board, ShortestLatency) {
   EXPECT_TRUE(board.run.frame == slow.run.frame);
 }
 
-TEST(Board, GivesUpAndSaysWhere) {
+TEST(Board, GivesUpAndReportsWhere) {
   BoardRun board({"", 4, 4, 1, 16, 8, 2});
   board.run.options.limits.cycles = 500;
   const std::string error = error_of(board);
   EXPECT_NE(error.find("the limit of 500 cycles has passed, at cycle 500; "), std::string::npos) << error;
 }
 
-TEST(Board, TellsOfAFault) {
+TEST(Board, ReportsAFault) {
   BoardRun board({"", 4, 4, 1, 16, 8, 2});
   board.run.options.program_length = 3;
   EXPECT_THROW(board.draw(), ChipFault);
 }
 
-// ---- A traverser inside, whose memory holds no tree, or loses something
+// ---- A traverser inside, with a malformed tree in its memory, or a memory that loses something
 
 constexpr uint32_t kCountWord = 3, kFirstChild = 10;
 
@@ -235,7 +235,7 @@ TEST(Board, CountsTheTestsThatTheTracerMakesOfTheSameRays) {
   EXPECT_EQ(work.triangles.tests, expected.triangles);
 }
 
-TEST(Board, SaysWhatOfTheTreeIsNone) {
+TEST(Board, ReportsMalformedTrees) {
   const auto expect = [](TreeFaultCode code, const std::string& what, const std::function<void(TreeBoard&)>& change) {
     TreeBoard board;
     change(board);
@@ -251,8 +251,7 @@ TEST(Board, SaysWhatOfTheTreeIsNone) {
          [](TreeBoard& board) { board.tree.setup.root = kLeafBit | 0x1fffffff; });
   expect(TreeFaultCode::Children, ": node 0, at byte 0 of the traverser's memory, has not one to four children",
          [](TreeBoard& board) { board.change(0, kCountWord, board.word(0, kCountWord) & 0xffffff); });
-  expect(TreeFaultCode::Order,
-         ": node 0, at byte 0 of the traverser's memory, has a child whose number is not above its",
+  expect(TreeFaultCode::Order, ": node 0, at byte 0 of the traverser's memory, has a child with a number not above its",
          [](TreeBoard& board) { board.change(0, kFirstChild, 0); });
   expect(TreeFaultCode::Visits, ": a ray comes to more nodes than the 2 that there are, at last to node ",
          [](TreeBoard& board) {
@@ -319,7 +318,7 @@ class LossyBus : public ChipDevice {
 };
 
 // Blocks of stacks that have never been written are zeros: the root, again and again.
-TEST(Board, WhoseMemoryLosesStacksSaysThatARayComesToTooManyNodes) {
+TEST(Board, ReportsTooManyNodesWhenItsMemoryLosesStacks) {
   TreeBoard board;
   auto bus = std::make_unique<LossyBus>(std::move(board.device), LossyBus::Loses::Spills);
   const LossyBus& lossy = *bus;
@@ -329,7 +328,7 @@ TEST(Board, WhoseMemoryLosesStacksSaysThatARayComesToTooManyNodes) {
   EXPECT_GT(lossy.lost, 0u);
 }
 
-TEST(Board, SaysWhoWaitsForAnAnswerThatIsLost) {
+TEST(Board, ReportsWhatWaitsForALostAnswer) {
   for (const LossyBus::Loses loses : {LossyBus::Loses::Reads, LossyBus::Loses::Beats}) {
     TreeBoard board;
     const uint64_t limit = chip::AnswerWatch::limit(board.run.options.configuration.chip);
@@ -344,7 +343,7 @@ TEST(Board, SaysWhoWaitsForAnAnswerThatIsLost) {
 }
 
 // Lines that come later are taken for those before them.
-TEST(Board, WhoseMemoryLosesOneReadEndsToo) {
+TEST(Board, EndsWhenItsMemoryLosesOneRead) {
   TreeBoard board;
   board.device = std::make_unique<LossyBus>(std::move(board.device), LossyBus::Loses::ARead);
   const std::string said = error_of(board);

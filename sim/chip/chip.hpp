@@ -38,7 +38,7 @@ struct ChipProgress {
 struct RunLimits {
   uint64_t cycles = 0;  ///< so many; 0: never. Of a program on an engine without time: warp instructions
   /// So many cycles in which instructions end and nothing else happens, as in a program without end; 0: never. By
-  /// default 10 million, unless `cycles` says how long a run may take.
+  /// default 10 million, unless `cycles` limits the run.
   std::optional<uint64_t> silent_cycles;
 
   uint64_t silent() const { return silent_cycles.value_or(cycles == 0 ? 10'000'000 : 0); }
@@ -50,7 +50,7 @@ struct ChipOptions {
   Memory* memory = nullptr;                               ///< program and materials
   uint32_t program_length = 0;                            ///< instructions, from address 0
   EnumArray<RayKernel, uint32_t, kRayKernels> entries{};  ///< PC of each
-  RecordLayout layout;  ///< of the intersections that the program imports; `configuration` says how many words
+  RecordLayout layout;  ///< of the intersections that the program imports; `configuration` has how many words
   /// Words kTileWidthLog2, kTileMask, kWidth and kHeight are set by the chip, whatever they hold.
   std::array<uint32_t, kArguments> arguments{};
   uint32_t width = 0, height = 0;  ///< pixels, 1 .. 65535
@@ -67,9 +67,9 @@ struct ChipOptions {
   /// picture.
   std::vector<uint32_t> tiles;
   chip::TileCosts* tile_costs = nullptr;  ///< gets what each of them costs; may be null
-  /// What rays have visited of the tree, last what they visited last, when this tile of `tiles` is cast, of whose
-  /// predecessor that is not: the caches of a traverser inside then hold it, and that takes no time. Asked together
-  /// with `tile_costs` only; may be empty.
+  /// What rays have visited of the tree, last what they visited last, when this tile of `tiles` is cast and its
+  /// predecessor is not: the caches of a traverser inside then hold it, and that takes no time. Asked together with
+  /// `tile_costs` only; may be empty.
   std::function<VisitList(uint32_t tile)> visited_before;
 
   std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end
@@ -142,7 +142,7 @@ struct ChipResult {
   std::optional<TraverserWork> traversal;  ///< of a traverser with a machine inside
 };
 
-/// A unit stopped with a fault. what() says which, where, and what it means.
+/// A unit stopped with a fault. what() has unit, fault, place and meaning.
 struct ChipFault : InputError {
   ChipFault(uint32_t unit_number, const Fault& what_fault, const std::string& message)
       : InputError(message), unit(unit_number), fault(what_fault) {}
@@ -150,21 +150,21 @@ struct ChipFault : InputError {
   Fault fault;
 };
 
-/// The traverser in the chip stopped with a fault: its memory does not hold a tree. what() says what is wrong, where,
+/// The traverser in the chip stopped with a fault: its memory does not hold a tree. what() has what is wrong, where,
 /// and what to do.
 struct TraverserFault : InputError {
   TraverserFault(const TreeFault& what_fault, const std::string& message) : InputError(message), fault(what_fault) {}
   TreeFault fault;
 };
 
-/// Nothing moves any more, or a limit has passed. what() says who waits for what.
+/// Nothing moves any more, or a limit has passed. what() reports what waits for what.
 struct ChipStalled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// One of the RunLimits has passed, and the run might have ended later.
 struct LimitPassed : ChipStalled {
-  /// `passed`: which one; `state`: who waits for what.
+  /// `passed`: which one; `state`: what waits for what.
   LimitPassed(const std::string& passed, const std::string& state)
       : ChipStalled(passed + "; " + state), limit(passed), rest(state) {}
   std::string limit, rest;

@@ -9,7 +9,7 @@ namespace raypool::chip {
 
 namespace {
 
-// A warp that always has a thread and waits for nobody: its instructions one after the other.
+// A warp that always has a thread and waits for no other warp: its instructions one after the other.
 uint64_t own_cycles(const WarpCycles& cycles) {
   return cycles.fetch + cycles.registers + cycles.issued + cycles.executing_sum();
 }

@@ -237,7 +237,7 @@ TEST(Chip, CallsProgressUpToTheEnd) {
   EXPECT_EQ(calls.back().rays, result.rays());
 }
 
-TEST(Chip, StopsOnAFaultAndSaysWhere) {
+TEST(Chip, StopsOnAFaultAndReportsWhere) {
   FrameRun run(8, 8, 2, 64, 64, 1);
   run.units[1]->fault_at_start = Fault{FaultCode::Misaligned, 3, 17};
   try {
@@ -269,7 +269,7 @@ TEST(Chip, GivesUpAtTheCycleLimit) {
   EXPECT_THROW(run.go(), ChipStalled);
 }
 
-TEST(Chip, GivesUpWhenACounterMayBeginAnew) {
+TEST(Chip, GivesUpWhenACounterMayWrap) {
   const auto error_of = [](uint32_t bits) -> std::string {
     FrameRun run(8, 8, 1, 64, 64, 1);
     run.options.configuration.counter_bits = bits;

@@ -1,4 +1,4 @@
-// What has been counted while a frame was drawn, by whoever drew it; and the result that is made of it.
+// What has been counted while a frame was drawn, on whichever engine; and the result that is made of it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a chip is told before it draws a frame, whoever plays it.
+// The inputs of a chip before it draws a frame, the same for all engines.
 #pragma once
 
 #include <array>

@@ -12,7 +12,7 @@
 
 namespace raypool::chip {
 
-inline constexpr uint64_t kCyclePicoseconds = 1000;  ///< of SystemC's time, whose resolution is 1 ps
+inline constexpr uint64_t kCyclePicoseconds = 1000;  ///< of SystemC's time, which has a resolution of 1 ps
 
 class LocalTime {
  public:

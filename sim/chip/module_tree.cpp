@@ -37,7 +37,7 @@ class Tree {
   const std::string& text() const { return text_; }
 
  private:
-  /// Exports and target sockets by what they lead to; and what belongs to a socket, and is shown as that.
+  /// Exports and target sockets by what they lead to; and what is part of a socket, and is shown as that.
   void find_targets(const sc_core::sc_object& object) {
     const auto* socket = dynamic_cast<const tlm::tlm_base_socket_if*>(&object);
     const bool initiator = socket != nullptr && (socket->get_socket_category() & tlm::TLM_INITIATOR_SOCKET) != 0;

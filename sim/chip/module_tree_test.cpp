@@ -11,7 +11,7 @@
 namespace raypool::chip {
 namespace {
 
-TEST(ModuleTree, SaysWhatEachSocketIsBoundTo) {
+TEST(ModuleTree, ShowsWhatEachSocketIsBoundTo) {
   test::TreeBoard board;
   const std::string text = chip_modules(board.run.options, *board.device);
   EXPECT_EQ(text, R"(chip                    ChipModule

@@ -8,7 +8,7 @@
 namespace raypool::chip {
 namespace {
 
-/// A chip whose ports show what a test says, one event a cycle.
+/// A chip with ports that show what a test sets, one event a cycle.
 class Ports {
  public:
   explicit Ports(uint32_t units = 1, bool overlap = false) : watch(frame(units, overlap), ChipOutputs{}) {}

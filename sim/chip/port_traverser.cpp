@@ -142,8 +142,8 @@ ImportKind PortTraverser::move(const ChipOutputs& outputs, const TraverserPorts&
   return ImportKind::None;
 }
 
-// The oldest of those whose kind has room: others do not wait for it. With a package's last beat the pool is ready for
-// whatever comes, and does not count the package yet.
+// The oldest of those with room for their kind: others do not wait for it. With a package's last beat the pool is ready
+// for whatever comes, and does not count the package yet.
 void PortTraverser::choose(const ChipOutputs& outputs, ImportKind put) {
   std::deque<Result>* oldest = nullptr;
   for (size_t kind = 0; kind < kImportKinds; ++kind) {

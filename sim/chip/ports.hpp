@@ -15,7 +15,7 @@ class RayTracer {
   /// Normal ray: true and the intersection when it hits. Shadow ray: true and an intersection with words 12-20 zero
   /// when it is free. False: the ray leaves nothing. Words 0-11 of the intersection are the ray's.
   virtual bool trace(const Ray& ray, Intersection& intersection) = 0;
-  /// False if what a normal ray hit reflects nothing. One that knows no materials says true.
+  /// False if what a normal ray hit reflects nothing. One that knows no materials returns true.
   virtual bool reflects(const Intersection& /*intersection*/) const { return true; }
 };
 

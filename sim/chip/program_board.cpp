@@ -148,8 +148,8 @@ void ProgramBoard::watch() {
     throw LimitPassed(limit_sentence(options_.limits.cycles, true), state());
   if (cycle_ == counted_cycles(options_.configuration)) {
     throw InputError(
-        fmt::format("{} cycles have passed, and after so many a performance counter of {}, of {} bits, may have begun "
-                    "anew: run it with --set counter_bits=48",
+        fmt::format("{} cycles have passed, and after so many a performance counter of {}, of {} bits, may have "
+                    "wrapped: run it with --set counter_bits=48",
                     cycle_, options_.configuration.name, options_.configuration.counter_bits));
   }
 }
@@ -188,7 +188,7 @@ std::string ProgramBoard::state() const {
   }
   if (o.launch_ready && launched_ < options_.blocks) text += fmt::format("unit {} waits for a launch; ", o.launch_unit);
   if (o.memory_request_valid && port_.room_from() > cycle_)
-    text += "a request waits for the memory port, whose queue is full; ";
+    text += "a request waits for the memory port: its queue is full; ";
   const uint64_t due = this->due();
   if (due < kFarAway)
     text += fmt::format("the memory gives a line in cycle {}; ", due);

@@ -43,8 +43,8 @@ ProgramResult run_program(const ProgramOptions& options);
 /// `options.memory` the program and the size are used.
 ProgramResult run_program(const ProgramOptions& options, chip::LineStore& store);
 
-/// "thread 3 of block 0 goes to address 0x402": the access behind a fault of
-/// run_program(options), whose units do not say it.
+/// "thread 3 of block 0 goes to address 0x402": the access behind a fault of run_program(options), which the units do
+/// not report.
 /// Runs the program again, on the architecture alone, from `memory` as it was before; empty if that ends otherwise.
 std::string faulting_access(const ProgramOptions& options, Memory memory, const Fault& fault);
 

@@ -134,7 +134,7 @@ TEST(ProgramRun, WithoutTimeTheLimitCountsInstructions) {
   }
 }
 
-TEST(ProgramRun, TellsTheAddressBehindAFault) {
+TEST(ProgramRun, ReportsTheAddressBehindAFault) {
   // Thread t loads from 64 + 6 t: thread 1 is the first that is not aligned.
   const std::vector<uint64_t> code = assembled("tid r1; imul r1, r1, 6; ld r2, [r1+64]; exit");
   Bench bench(code);

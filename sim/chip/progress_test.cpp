@@ -1,4 +1,5 @@
-// A chip that works for long without a transfer is not locked up; one in which nothing happens is, and says who waits.
+// A chip that works for long without a transfer is not locked up; one in which nothing happens is, and reports what
+// waits.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -43,7 +44,7 @@ TEST(ProgressWatch, IsSilentAfterItsLimitAndNeverWithoutOne) {
   for (uint64_t i = 1; i < 1000; ++i) EXPECT_EQ(patient.look(100 * i, {i, 1, kNever}), State::GoesOn);
 }
 
-TEST(RunLimits, TakeASilentProgramForEndlessOnlyWhereNobodySaidWhenItEnds) {
+TEST(RunLimits, TakeASilentProgramForEndlessOnlyWithoutALimit) {
   EXPECT_EQ((RunLimits{0, {}}).silent(), 10'000'000u);
   EXPECT_EQ((RunLimits{100'000'000, {}}).silent(), 0u);
   EXPECT_EQ((RunLimits{100'000'000, 500}).silent(), 500u);
@@ -235,7 +236,7 @@ struct DeafMemory : PortsAlone {
   }
 };
 
-TEST(Progress, ABoardWhoseMemoryHearsNothingIsLockedUp) {
+TEST(Progress, ABoardThatCannotReachItsMemoryIsLockedUp) {
   for (const TraverserName traverser : {TraverserName::Static, TraverserName::Hardware}) {
     DrawnFrame frame(pile(20), traverser, one_ray);
     frame.run.options.limits.cycles = 100 * kPeriod;

@@ -22,7 +22,7 @@ class RayFates {
         sorts_(chip.culling && reflections),
         depth_(depth) {}
 
-  /// Direct: with culling, a hit whose reflection could not add to the picture.
+  /// Direct: with culling, a hit with a reflection that could not add to the picture.
   ImportKind kind_of(const Ray& ray, const Intersection& intersection) const {
     if (is_shadow(ray)) return ImportKind::Shadow;
     const bool reflects = (ray[word::kFlags] & kDepthMask) < depth_ && tracer_.reflects(intersection);

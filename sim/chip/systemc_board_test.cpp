@@ -302,7 +302,7 @@ TEST(SystemcBoard, TakesPictureAndCameraFromTheHost) {
   EXPECT_TRUE(drawn.run.frame == bare.run.frame);
 }
 
-TEST(SystemcBoard, SaysThatNoFrameHasBeenDrawn) {
+TEST(SystemcBoard, ReportsThatNoFrameHasBeenDrawn) {
   BoardRun board({"", 4, 4, 1, 16, 8, 2});
   Assembly assembly(board);
   FixedLatencyMemory memory("memory", board.run.image.memory, chip_of(board));

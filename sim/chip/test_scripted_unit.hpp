@@ -1,4 +1,4 @@
-// For tests: a world whose rays hit and miss by a hash of pixel and depth, and a compute unit that plays the ray
+// For tests: a world where rays hit and miss by a hash of pixel and depth, and a compute unit that plays the ray
 // kernels in it, obeying the port protocols with random delays, so that a run's every ray is known beforehand.
 #pragma once
 
@@ -41,7 +41,7 @@ struct World {
 /// A frame of the world, counted without a machine.
 struct Expected {
   uint64_t eye = 0, secondary = 0, shadow = 0, missed = 0, blocked = 0, beyond = 0;
-  uint64_t deepest = 0;  ///< hits of rays whose reflections, made or not, are beyond
+  uint64_t deepest = 0;  ///< hits of rays with reflections, made or not, that are beyond
   std::map<std::pair<uint32_t, uint32_t>, int> contributions;  ///< (pixel, depth) -> how often
 
   Expected(const World& world, int width, int height, int depth_limit) {

@@ -23,7 +23,7 @@ TEST(TileCosts, AnIntervalIsSharedAmongThePixelsThatAreHeldInIt) {
   EXPECT_DOUBLE_EQ(tiles.costs()[1][count::kCycles], 2 + 1 + 7 + 3);
 }
 
-TEST(TileCosts, WhatIsCountedWhileNothingIsHeldGoesToWhoComesNext) {
+TEST(TileCosts, WhatIsCountedWhileNothingIsHeldGoesToTheNextTile) {
   TileCosts tiles;
   tiles.cast(1, at(0));
   tiles.finished(0, at(4));

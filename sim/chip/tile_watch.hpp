@@ -1,4 +1,4 @@
-// Tells TileCosts of a board's tiles: when each is cast, and when each of its pixels is finished.
+// Records a board's tiles in TileCosts: when each is cast, and when each of its pixels is finished.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ namespace raypool::chip {
 
 class TileWatch {
  public:
-  /// `options`, whose tile_costs are told, must outlive it. `begin`: what the chip shows in the frame's first cycle.
-  /// `counts`: all that has been counted until now.
+  /// `options` has the tile_costs that it fills, and must outlive it. `begin`: what the chip shows in the frame's first
+  /// cycle. `counts`: all that has been counted until now.
   TileWatch(const ChipOptions& options, uint32_t units, const ChipOutputs& begin, std::function<Counts()> counts);
 
-  /// A unit takes a launch. Returns true for a tile whose predecessor is not cast: number() is its number.
+  /// A unit takes a launch. Returns true for a tile that is cast without its predecessor: number() is its number.
   bool launched(uint32_t unit, RayKernel kernel, const LaunchCommand& launch);
   /// Of the last tile that was launched, along the walk.
   uint32_t number() const { return number_; }

@@ -29,9 +29,8 @@ std::string what(const TreeFault& fault, const TreeSetup& tree) {
                          byte);
     case TreeFaultCode::Order:
       return fmt::format(
-          "node {}, at byte {} of the traverser's memory, has a child whose number is not above its own, from which a "
-          "ray "
-          "might come back for ever",
+          "node {}, at byte {} of the traverser's memory, has a child with a number not above its own, from which a "
+          "ray might come back for ever",
           fault.line, byte);
     case TreeFaultCode::Visits:
       return fmt::format(
@@ -48,7 +47,7 @@ std::string what(const TreeFault& fault, const TreeSetup& tree) {
 std::string fault_sentence(const TreeFault& fault, const TreeSetup& tree) {
   return fmt::format(
       "the traverser has stopped with a fault: {}; write the tree there as docs/use/tree-file.md has it, and "
-      "see to it that nobody else writes to that memory",
+      "make sure that nothing else writes to that memory",
       what(fault, tree));
 }
 

@@ -40,7 +40,7 @@ void TraverserWatch::put(const TraverserPorts& traverser) {
   delivered(ray, traverser.put_kind);
 }
 
-// It does not say which of the rays it was; but what all of them come to.
+// It does not report which of the rays it was; but what all of them come to.
 void TraverserWatch::delivered(const Ray& ray, ImportKind kind) {
   RayCounts going_on;
   going_on.count(ray, true);

@@ -1,4 +1,4 @@
-// What a traverser inside a chip does, as its ports tell it.
+// What a traverser inside a chip does, as seen at its ports.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Why a picture is black, for one who looks at it and wonders.
+// Explains why a picture is black.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace raypool {
 
-/// Who has chosen where the eye is.
+/// What has chosen the place of the eye.
 enum class EyeOf { User, File, Automatic };
 
 /// A sentence with what to try; empty unless every pixel of the PNG is black.

@@ -30,7 +30,7 @@ Scene triangle(float size) {
   return scene;
 }
 
-TEST(BlackPicture, SaysWhatToMove) {
+TEST(BlackPicture, SuggestsWhatToMove) {
   const FrameBuffer black(4, 4);
   const Scene scene = triangle(1);
   EXPECT_NE(why_black(black, counts(16, 16, 0, 0), scene, EyeOf::User).find("--eye"), std::string::npos);
@@ -38,20 +38,20 @@ TEST(BlackPicture, SaysWhatToMove) {
   EXPECT_NE(why_black(black, counts(16, 3, 13, 12), scene, EyeOf::User).find("Kd"), std::string::npos);
 }
 
-TEST(BlackPicture, TellsToLeaveOutNoViewThatIsLeftOut) {
+TEST(BlackPicture, DoesNotSuggestToLeaveOutAViewThatIsLeftOut) {
   const FrameBuffer black(4, 4);
   const RayCounts nothing = counts(16, 16, 0, 0);
-  const auto tells = [&](const Scene& scene, EyeOf eye, const char* what) {
+  const auto suggests = [&](const Scene& scene, EyeOf eye, const char* what) {
     return why_black(black, nothing, scene, eye).find(what) != std::string::npos;
   };
   const Scene scene = triangle(1), flat = triangle(0);
-  EXPECT_TRUE(tells(scene, EyeOf::User, "leave the view out"));
-  EXPECT_FALSE(tells(scene, EyeOf::File, "leave the view out"));
-  EXPECT_FALSE(tells(scene, EyeOf::Automatic, "leave the view out"));
-  EXPECT_TRUE(tells(scene, EyeOf::Automatic, "scale the scene"));
-  EXPECT_TRUE(tells(scene, EyeOf::File, "the one in the file"));
+  EXPECT_TRUE(suggests(scene, EyeOf::User, "leave the view out"));
+  EXPECT_FALSE(suggests(scene, EyeOf::File, "leave the view out"));
+  EXPECT_FALSE(suggests(scene, EyeOf::Automatic, "leave the view out"));
+  EXPECT_TRUE(suggests(scene, EyeOf::Automatic, "scale the scene"));
+  EXPECT_TRUE(suggests(scene, EyeOf::File, "the one in the file"));
   for (const EyeOf eye : {EyeOf::User, EyeOf::File, EyeOf::Automatic})
-    EXPECT_TRUE(tells(flat, eye, "no triangle of the scene has an area"));
+    EXPECT_TRUE(suggests(flat, eye, "no triangle of the scene has an area"));
 }
 
 TEST(BlackPicture, OnePixelThatShowsIsEnough) {

@@ -52,8 +52,8 @@ struct EngineOptions {
   Boundary boundary = Boundary::Unit;
 };
 
-/// The Verilated device that they name. Throws InputError when it is missing; says on
-/// stderr, once, if the Verilog is newer.
+/// The Verilated device that they name. Throws InputError when it is missing; reports on stderr, once, if the Verilog
+/// is newer.
 std::string find_unit_library(const EngineOptions& options);
 
 /// A Verilog file in the folder `rtl` that was changed after `library`; empty if there is none, or no such folder.

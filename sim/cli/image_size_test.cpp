@@ -13,7 +13,7 @@ TEST(ImageSize, WidthComesFirst) {
   EXPECT_EQ(size.height, 16384);
 }
 
-TEST(ImageSize, WhatIsNoSizeOrOutOfRangeIsRefusedWithTheRange) {
+TEST(ImageSize, MalformedSizesAndThoseOutOfRangeAreRefusedWithTheRange) {
   for (const char* text : {"0x0", "0x5", "5x0", "16385x1", "1x16385", "-4x4", "4x-4", "4", "4x", "x4", "4x4x4", "4 x4",
                            "", "99999999999x1"}) {
     try {

@@ -1,4 +1,4 @@
-// The second run of a command whose first one met a difference.
+// The second run of a command after its first one met a difference.
 #pragma once
 
 #include "lockstep/lockstep_unit.hpp"
@@ -6,8 +6,8 @@
 namespace raypool {
 
 /// Runs the command again, in a process of its own, as SystemC builds a chip once in a process: with --inspect, up to
-/// `difference`. True if it has met a difference again, and so printed the report that says what was wrong inside;
-/// else, why it has not stands on standard error.
+/// `difference`. True if it has met a difference again, and so printed the report with what was wrong inside; else, why
+/// it has not stands on standard error.
 bool run_inspecting(int argc, char** argv, const LockstepDifference& difference);
 
 }  // namespace raypool

@@ -6,7 +6,7 @@ namespace raypool {
 
 std::string limit_sentence(const LimitPassed& passed, bool given) {
   return fmt::format("{}{}; {}", passed.limit,
-                     given ? "" : ", and no other limit was given: if it takes longer, say how long with --cycles",
+                     given ? "" : ", and no other limit was given: if it takes longer, set a limit with --cycles",
                      passed.rest);
 }
 

@@ -1,4 +1,4 @@
-// What a command says when a run has come to a limit.
+// What a command prints when a run has come to a limit.
 #pragma once
 
 #include <string>

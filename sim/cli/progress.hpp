@@ -1,4 +1,4 @@
-// Says how far a long run is: on a terminal one line that is rewritten, else a line every few seconds.
+// Shows how far a long run is: on a terminal one line that is rewritten, else a line every few seconds.
 #pragma once
 
 #include <chrono>

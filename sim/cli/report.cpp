@@ -248,7 +248,7 @@ void kernel_table(std::string& text, const ChipResult& chip) {
 void ray_table(std::string& text, const RunRecord& record, const RayCounts& rays) {
   line(text, "  rays        {}: {} eye, {} reflection, {} shadow", rays.traced(), rays.eye.traced,
        rays.reflection.traced, rays.shadow.traced);
-  line(text, "    in vain   {} eye, {} reflection, {} shadow; of these had no weight: {}, {}, {}", rays.eye.futile,
+  line(text, "    wasted    {} eye, {} reflection, {} shadow; of these had no weight: {}, {}, {}", rays.eye.futile,
        rays.reflection.futile, rays.shadow.futile, rays.eye.weightless, rays.reflection.weightless,
        rays.shadow.weightless);
   if (record.depth > 1 && !record.reflections)
@@ -424,7 +424,7 @@ std::string to_table(const RunRecord& record) {
   if (record.chip_lockstep) line(text, "  {}", to_string(*record.chip_lockstep));
   std::string simulated;
   if (record.chip && record.chip->timed) {
-    simulated = fmt::format(", {:.0f} thousand cycles and {:.0f} thousand thread instructions a second",
+    simulated = fmt::format(", {:.0f} kcycles/s and {:.0f} thousand thread instructions/s",
                             rate(record.chip->cycles, record.simulation_seconds) / 1e3,
                             rate(record.chip->thread_instructions, record.simulation_seconds) / 1e3);
   }

@@ -76,7 +76,7 @@ int close_output(int code) {
   int error = std::fflush(stdout) != 0 ? errno : 0;
   // Why a write before this one failed is forgotten: one more is asked for the reason.
   if (lost && error == 0) error = write(STDOUT_FILENO, "\n", 1) < 0 ? errno : EIO;
-  // Network file systems tell of a full disk when the file is closed; one that was closed before is none.
+  // Network file systems report a full disk when the file is closed; one that was closed before is none.
   if (std::fclose(stdout) != 0 && error == 0 && errno != EBADF) error = errno;
   if (error == 0) return code;
   std::fprintf(stderr, "raypool: cannot write to standard output (%s): what was printed is not complete\n",
@@ -102,7 +102,7 @@ int run_and_report(int argc, char** argv, AddCommands add) {
     std::fprintf(stderr, "raypool: %s\n", stopped.what());
     return kOtherFailure;
   } catch (const std::exception& error) {
-    if (std::ferror(stdout) != 0) return kInputFailure;  // which close_output() says
+    if (std::ferror(stdout) != 0) return kInputFailure;  // which close_output() reports
     std::fprintf(stderr, "raypool: failed: %s\n", error.what());
     return kOtherFailure;
   }

@@ -1,5 +1,5 @@
-// A scene as the command line names it: with camera and light from its words, and with
-// what cannot be drawn told on stderr.
+// A scene as the command line names it: with camera and light from its words, and with what cannot be drawn reported on
+// stderr.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace raypool {
 
-/// Of a picture, WIDTHxHEIGHT in pixels, where nobody says it: what is drawn in half a minute by Verilog too.
+/// Of a picture, WIDTHxHEIGHT in pixels, where none is given: what is drawn in half a minute by Verilog too.
 constexpr char kDefaultSize[] = "200x200";
 
 /// Camera and light on the command line; what is empty stays as the view has it.

@@ -121,7 +121,7 @@ void check(const SimOptions& options, Engine engine) {
     throw InputError("--error says how long it takes, --time how large the error is: give one of them");
 }
 
-/// What is named in vain is refused; of a file, which may be written for other runs as well, it is told.
+/// Settings without effect are refused; those of a file, which may be written for other runs as well, are reported.
 void check_fields_in_use(const Configuration& configuration) {
   refuse_unused_settings(configuration);
   const std::string told = unused_in_file(configuration);
@@ -163,7 +163,7 @@ uint32_t content_hash(const Scene& scene, const Configuration& configuration) {
   return hash_of(to_json(nameless), hash);
 }
 
-/// A user's files may have any content: names of built-in things alone say what is drawn.
+/// A user's files may have any content: names of built-in things alone define what is drawn.
 bool names_say_all(const SimOptions& options, const Scene& scene, const Configuration& configuration) {
   if (options.scene != "cornell" && options.scene != "room") return false;
   const Scene own = load_scene(options.scene, {kLeastDetail, "", {}, ""});  // its view is that of any detail
@@ -187,7 +187,7 @@ fs::path default_folder(const SimOptions& options, const Scene& scene, const Con
   return results_folder() / name;
 }
 
-/// "62% of the pixels, ..."; an engine without time has no cycles to tell.
+/// "62% of the pixels, ..."; an engine without time has no cycles to show.
 std::string progress_text(const ChipProgress& done, bool timed, double seconds) {
   std::string text = fmt::format("  {:3.0f}% of the pixels, {} rays, ", 100 * done.pixels_done, done.rays);
   if (timed) text += fmt::format("{} cycles, ", done.cycles);
@@ -441,7 +441,7 @@ void print_table(const SimOptions& options, const RunRecord& record, const Outpu
                                       : "");
 }
 
-/// What the options say of a run, before its scene is read.
+/// The record of a run from its options, before its scene is read.
 RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& size) {
   RunRecord record;
   record.command = options.command;
@@ -463,7 +463,7 @@ RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& s
   return record;
 }
 
-/// Of a scene that is recentred, to who is shown words of the machine.
+/// Reports the centre of a scene that is recentred, if words of the machine are shown.
 void tell_centre(const SimOptions& options, const Scene& scene) {
   if (!scene.recentred() || (!options.waves && options.inspect_until == 0)) return;
   const Vec3d& centre = scene.centre;
@@ -497,7 +497,7 @@ int sim_command(const SimOptions& options) {
                                        : fs::path(options.out));
 
   clear_unfinished(out);
-  // Who stops a run wants to see its waveform until then.
+  // A run that is stopped leaves its waveform until then.
   std::optional<KeepRunning> keep_running;
   if (options.waves) keep_running.emplace();
 

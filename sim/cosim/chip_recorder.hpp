@@ -10,9 +10,8 @@
 namespace raypool {
 
 /// Stands in front of a chip. A line a cycle: inputs, expected outputs and, bit by bit, which of them count, as
-/// hexadecimal numbers. The fields are those of chip_replay.v, in its order, the first one in the highest bits. What
-/// says whether something is valid always counts, a payload while it is valid, of a write to the memory the words that
-/// it writes.
+/// hexadecimal numbers. The fields are those of chip_replay.v, in its order, the first one in the highest bits. Valids
+/// always count, a payload while it is valid, of a write to the memory the words that it writes.
 class ChipRecorder : public ChipDevice {
  public:
   /// `chip`, of this configuration, and `out` must outlive it.

@@ -1,5 +1,5 @@
-// Runs random programs on a compute unit whose every port stalls at random: the memory answers late and in bursts,
-// pools are full or empty, the frame buffer waits.
+// Runs random programs on a compute unit with random stalls at every port: the memory answers late and in bursts, pools
+// are full or empty, the frame buffer waits.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) = 0;
-  /// The unit has been reset in the middle of the run, which begins anew.
+  /// The unit has been reset in the middle of the run, which begins again.
   virtual void restart() {}
-  /// The first fault: all of its cycle, as ComputeUnit::faults() says, before that cycle.
+  /// The first fault: all of its cycle, as ComputeUnit::faults() has them, before that cycle.
   virtual void faulted(const std::vector<Fault>& faults) { static_cast<void>(faults); }
 };
 

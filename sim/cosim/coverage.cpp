@@ -74,7 +74,7 @@ void Coverage::faulted(const std::vector<Fault>& faults) {
       if (warp.inside && launched_.size() > ended_ + 1)
         hit(warp.kernel == ended_ ? Event::FaultInOlder : Event::FaultInNewer);
       const uint32_t upper = 1u << (configuration_.pc_bits - 1);
-      // What has retired beyond it says that the twin is inside.
+      // Instructions have retired beyond it: the twin is inside.
       const bool outside = fault.code == FaultCode::PcOutsideProgram && (fault.pc & upper) != 0;
       if (outside && std::find(pcs_.begin() + (fault.pc ^ upper), pcs_.end(), true) != pcs_.end())
         hit(Event::TwinInside);

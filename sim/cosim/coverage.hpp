@@ -1,6 +1,6 @@
 // What random programs have exercised, read from a unit's ports, trace and counters alone:
 // nothing inside the RTL is looked at.
-// docs/develop/coverage.md says what each group means.
+// docs/develop/coverage.md defines each group.
 #pragma once
 
 #include <array>
@@ -130,7 +130,7 @@ class Coverage : public RunObserver {
   uint64_t reads_asked_ = 0, data_fetches_ = 0;
   uint64_t last_line_end_ = 0, last_beat_ = 0, last_import_beat_ = 0;
   uint32_t import_beat_ = 0;
-  uint32_t import_thread_ = 0;             ///< whose package comes; of one unit
+  uint32_t import_thread_ = 0;             ///< the thread that gets the package that comes; of one unit
   std::array<uint64_t, 3> set_written_{};  ///< last beat of a package for the set
   std::array<uint64_t, kMostUnits> made_{},
       left_{};                              ///< rays and contributions: by rout and rfb, and those that have left

@@ -28,7 +28,7 @@ struct Factor {
 };
 /// Of a unit, and how many.
 const std::vector<Factor>& covering_factors();
-/// Of the chip around small units (rtl/chip/rp_chip.v), and of the units what it has to do with.
+/// Of the chip around small units (rtl/chip/rp_chip.v), and those of the units that it depends on.
 const std::vector<Factor>& chip_factors();
 /// Of one with the traverser inside (rtl/traverser/rp_traverser.v).
 const std::vector<Factor>& inside_factors();

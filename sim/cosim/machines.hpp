@@ -20,7 +20,7 @@ const std::vector<MachineFeature>& machine_features();
 /// Names of the features that none of the machines has, in the order of machine_features().
 std::vector<std::string> features_lacking(const std::vector<Machine>& machines);
 
-/// Values that covering_factors() would try and none of the machines has, "warps 1, 8, 32"; ALUs left out, whose
+/// Values that covering_factors() would try and none of the machines has, "warps 1, 8, 32"; ALUs left out: their
 /// features stand in machine_features().
 std::vector<std::string> values_lacking(const std::vector<Machine>& machines);
 

@@ -12,11 +12,11 @@
 namespace raypool {
 namespace {
 
-/// Which warps have touched a word in the current kernel; with several units, whose kernels overlap, in which kernel.
+/// Which warps have touched a word in the current kernel; with several units, where kernels overlap, in which kernel.
 struct Touched {
-  static constexpr int kNobody = -1, kSeveral = -2;
+  static constexpr int kNone = -1, kSeveral = -2;
   uint32_t kernel = 0;
-  int writer = kNobody, reader = kNobody;
+  int writer = kNone, reader = kNone;
 };
 
 class Checker {
@@ -62,7 +62,7 @@ class Checker {
             faulted = step.subnormal;
           }
         }
-        if (!progress && !faulted) return "a rin waits for packages that nobody sends";
+        if (!progress && !faulted) return "a rin waits for packages that never come";
       }
       if (faulted) {
         reset();
@@ -107,7 +107,7 @@ class Checker {
   // Is what the warp's next instruction reads defined, and may it touch that memory?
   std::string before(uint32_t warp) {
     const DecodedInstruction* i = core_.next_instruction(warp);
-    if (i == nullptr || !i->legal()) return "";  // the step will say it
+    if (i == nullptr || !i->legal()) return "";  // the step will report it
     const uint32_t mask = core_.thread_mask(warp, *i);
     const InstructionInfo& info = *i->info;
     const auto undefined = [&](uint8_t number) { return (mask & ~defined_[warp * kRegisters + number]) != 0; };
@@ -135,12 +135,12 @@ class Checker {
     const int me = static_cast<int>(several ? kernel_ * warps_ + warp : warp);
     for (; mask != 0; mask &= mask - 1) {
       const uint32_t address = base[__builtin_ctz(mask)] + i.immediate;
-      if (address >= told_limit(program_)) return "";  // the step will say it
+      if (address >= told_limit(program_)) return "";  // the step will report it
       if (store && address < program_.program.code.size() * 8) return "it stores into its code";
       Touched& word = touched_[address];
-      if (!several && word.kernel != kernel_) word = {kernel_, Touched::kNobody, Touched::kNobody};
-      const bool read_by_others = word.reader != Touched::kNobody && word.reader != me;
-      const bool written_by_others = word.writer != Touched::kNobody && word.writer != me;
+      if (!several && word.kernel != kernel_) word = {kernel_, Touched::kNone, Touched::kNone};
+      const bool read_by_others = word.reader != Touched::kNone && word.reader != me;
+      const bool written_by_others = word.writer != Touched::kNone && word.writer != me;
       if (written_by_others || (store && read_by_others)) return fmt::format("a race at address {}", address);
       if (store)
         word.writer = me;

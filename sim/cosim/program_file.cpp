@@ -50,7 +50,7 @@ uint32_t number_in(const std::string& key) {
   size_t used = 0;
   const unsigned long value = std::stoul(key, &used);
   if (used != key.size() || value > 0xffff)
-    throw InputError("'" + key + "' is no number of an instruction or argument");
+    throw InputError("'" + key + "' is not the number of an instruction or argument");
   return static_cast<uint32_t>(value);
 }
 

@@ -26,9 +26,9 @@ struct ProgramProfile {
   uint32_t weight(size_t type) const { return type < types.size() ? types[type] : types[AluType::Flt]; }
 };
 
-/// The mix whose programs find pairs of weighted operands (arith/test_operands.hpp) in memory.
+/// The mix with pairs of weighted operands (arith/test_operands.hpp) in memory.
 inline constexpr std::string_view kOperandMix = "operands";
-/// The mix whose warps end in faults, several of them at about the same time.
+/// The mix with warps that end in faults, several of them at about the same time.
 inline constexpr std::string_view kFaultMix = "faults";
 
 // clang-format off

@@ -442,7 +442,7 @@ void ProgramStatements::rotate() {
   emit(i);
   written_words_ = 0;
   if (!chance(4)) return;
-  // On to the set that is being exported, at whose words it arrives first that are read last.
+  // On to the set that is being exported, first to the words that are read last.
   i.guard = 0, i.guard_negated = true;
   for (uint32_t n = 1 + below(3); n > 0; --n) emit(i);
   for (int word = kRayWords; word > 0;) emit_word(Opcode::Rst, --word);
@@ -587,7 +587,7 @@ void ProgramStatements::functions() {
     const bool returns = chance(2);
     if (returns) emit(Opcode::Ret, 0, 0, 0, control_guard());
     uint32_t end = here();
-    // An end that is never reached, whose lower bits are a PC inside.
+    // An end that is never reached, with lower bits that are a PC inside.
     const uint32_t bits = configuration_.pc_bits;
     if (returns && bits < 16 && frames_.back().leaves.empty() && chance(2))
       end = (start + 1 + below(end - start)) | 1u << (bits + below(16 - bits));

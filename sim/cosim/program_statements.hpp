@@ -81,7 +81,8 @@ class ProgramStatements : public ProgramEmitter {
   /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and
   /// quotients at the ends of the range.
   void arithmetic();
-  /// A loop whose threads each load another pair of operands in each round, for a few dozen instructions that compute.
+  /// A loop in which threads each load another pair of operands in each round, for a few dozen instructions that
+  /// compute.
   void pairs(int loops);
   uint32_t way_bytes() const { return configuration_.data_cache_bytes / 2; }
   /// r13 = an aligned address among the first `entries` words: one for all lanes, neighbours, a stride, lines of
@@ -90,9 +91,9 @@ class ProgramStatements : public ProgramEmitter {
   /// `st` or `ld` at r13 + offset; `of_four`: or ld3.
   void access(bool store, uint32_t offset, bool of_four = false);
   void memory();
-  /// Loads and stores at addresses up to the told limit, far beyond the program's data: in lines of the
-  /// warp's own, or in lines that nobody stores to. Addresses of the lanes, of the warps or of one access
-  /// after the other differ in one upper bit.
+  /// Loads and stores at addresses up to the given limit, far beyond the program's data: in lines of the warp's own, or
+  /// in lines that no warp stores to. Addresses of the lanes, of the warps or of one access after the other differ in
+  /// one upper bit.
   void far_memory();
   /// r13 = what far addresses have below their upper bits; `spread`: an upper bit from
   /// which on lanes or warps differ, or 32.
@@ -152,14 +153,14 @@ class ProgramStatements : public ProgramEmitter {
     size_t at;
     int loops, entries;
   };
-  std::vector<Call> calls_;  ///< whose functions are not there yet
+  std::vector<Call> calls_;  ///< of functions that are not there yet
 
  private:
-  /// A loop, with its registers, or a function, whose counter is -1.
+  /// A loop, with its registers, or a function, with counter -1.
   struct Frame {
     int counter, going;
     std::optional<uint32_t> pad;
-    std::vector<size_t> leaves;  ///< jumps whose target lies beyond the end
+    std::vector<size_t> leaves;  ///< jumps with a target beyond the end
   };
   std::vector<Frame> frames_;
   int call_sites_ = 0;

@@ -235,7 +235,7 @@ class Generator : public ProgramStatements {
     emit(i);
   }
 
-  // Its last register is followed by the first of 16, which nobody needs any more.
+  // Its last register is followed by the first of 16, which is not needed any more.
   void last_triple() {
     Instruction i;
     i.info = &instruction(chance(2) ? Opcode::Fmul3 : Opcode::Arg3);
@@ -321,7 +321,7 @@ class Generator : public ProgramStatements {
         return;
       case FaultCode::Misaligned:
       case FaultCode::AddressOutsideMemory: {
-        // One lane is enough; a warp whose faulty lane is left out goes on.
+        // One lane is enough; a warp goes on if its faulty lane is left out.
         const bool some = chance(2);
         const bool three = configuration_.triples && chance(2);
         const Opcode access = three ? Opcode::Ld3 : chance(2) ? Opcode::Ld : Opcode::St;
@@ -512,7 +512,7 @@ class Generator : public ProgramStatements {
   bool more_memory_told_ = chance(3) || far_memory_told_;
   bool runs_out_ = false;                         ///< the program ends without `exit`
   std::vector<size_t> across_limit_;              ///< ld3 of which a later element lies beyond the memory
-  std::vector<size_t> from_length_, from_limit_;  ///< instructions whose immediate is relative to what the unit is told
+  std::vector<size_t> from_length_, from_limit_;  ///< instructions with an immediate relative to the unit's inputs
   std::vector<size_t> twins_;                     ///< jumps to a PC inside the program, which get its twin outside
 };
 
@@ -585,7 +585,7 @@ RandomProgram make_random_program(const Configuration& configuration, uint64_t s
   const ProgramProfile& profile =
       mix.empty() ? kProgramProfiles[seed % std::size(kProgramProfiles)] : profile_named(mix);
   for (uint32_t attempt = 0;; ++attempt) {
-    // The longest ones of a machine with short PCs are drawn anew, shorter.
+    // The longest ones of a machine with short PCs are drawn again, shorter.
     const int shorter = std::max(4, length >> std::min(attempt, 8u));
     RandomProgram program = Generator(configuration, profile, seed, units, attempt).make(shorter);
     if (told_length(program) < 1u << configuration.pc_bits) return program;

@@ -39,7 +39,7 @@ struct RandomProgram {
     uint32_t block;
     ImportKind import;
     uint32_t pc = 0;                      ///< entry
-    uint32_t blocks = 1;                  ///< what the kernel is told of the number of blocks
+    uint32_t blocks = 1;                  ///< the number of blocks that the kernel is given
     std::optional<Rewrite> rewrite = {};  ///< before its launch
   };
   std::vector<Kernel>
@@ -52,21 +52,21 @@ struct RandomProgram {
   std::string profile;          ///< name of the mix of instructions
   uint32_t data_begin = 0;      ///< byte address; random words from here to the end of memory
   uint32_t memory_bytes = 0;    ///< size of memory
-  uint32_t program_length = 0;  ///< what the unit is told; beyond the code, if that lies there
-  uint32_t memory_limit = 0;    ///< what the unit is told; beyond memory, if that lies there
-  uint32_t restart = 0;         ///< cycle in which the unit is reset and everything begins anew; 0: never
+  uint32_t program_length = 0;  ///< what the unit is given; beyond the code, if that lies there
+  uint32_t memory_limit = 0;    ///< what the unit is given; beyond memory, if that lies there
+  uint32_t restart = 0;         ///< cycle in which the unit is reset and everything begins again; 0: never
   uint32_t faults = 0;          ///< in one of which a kernel may end, instead of `exit`: fault_bit() of each
 };
 
 /// A program that shows one thing; the next seed shows another one. The same configuration and seed give the same
-/// program. Warps store only to words of their own and read those or words that nobody writes, so that the result does
-/// not depend on the order of warps; program_check.hpp says exactly what a program promises. `length`: about how many
-/// instructions the body of a kernel has. `units`: of the device. `mix`: of instructions, by name
+/// program. Warps store only to words of their own and read those or words that no warp writes, so that the result does
+/// not depend on the order of warps; program_check.hpp defines exactly what a program promises. `length`: about how
+/// many instructions the body of a kernel has. `units`: of the device. `mix`: of instructions, by name
 /// (program_profile.hpp); empty: the seed chooses it.
 RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length = 120, int units = 1,
                                   const std::string& mix = "");
 
-/// The limits that the unit is told: never less than there is, whatever shrinking has left.
+/// The limits that the unit is given: never less than there is, whatever shrinking has left.
 uint32_t told_length(const RandomProgram& program);
 uint32_t told_limit(const RandomProgram& program);
 

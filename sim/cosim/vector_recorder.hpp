@@ -10,10 +10,10 @@
 
 namespace raypool {
 
-/// Wraps `unit`, whose trace must be on whenever it is clocked. A line a cycle in `out`, which must outlive the unit:
+/// Wraps `unit`; its trace must be on whenever it is clocked. A line a cycle in `out`, which must outlive the unit:
 /// inputs, expected outputs and, bit by bit, which of them count, as hexadecimal numbers. The fields are those of
-/// unit_replay.v, in its order, the first one in the highest bits. Outputs that say whether something is valid always
-/// count; a payload counts while it is valid, of a retirement the lanes that it writes.
+/// unit_replay.v, in its order, the first one in the highest bits. Valids always count; a payload counts while it is
+/// valid, of a retirement the lanes that it writes.
 std::unique_ptr<ComputeUnit> make_vector_recorder(const Configuration& configuration, std::unique_ptr<ComputeUnit> unit,
                                                   std::ostream& out);
 

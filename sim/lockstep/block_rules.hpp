@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Rules of blocks inside a chip: of a block's own inputs in the RTL a rule knows what its outputs must be. So whatever
-// is wrong around it, a block whose outputs break its rule is wrong itself, and one that keeps it is not.
+// is wrong around it, a block with outputs that break its rule is wrong itself, and one that keeps it is not.
 #pragma once
 
 #include <fmt/format.h>
@@ -43,7 +43,7 @@ class BlockRule {
   bool present() const { return present_; }
   /// The block has been reset.
   virtual void reset() {}
-  /// Cycles have passed in which nobody looked, and in which the block had nothing to do.
+  /// Cycles have passed that were not looked at, and in which the block had nothing to do.
   virtual void forget() {}
   /// What the block shows in this cycle, of its inputs in those before.
   virtual void compare(Findings& findings) = 0;
@@ -85,7 +85,7 @@ class History {
     values_.push_back(std::move(value));
     if (values_.size() > kMost) values_.pop_front();
   }
-  /// So many cycles ago, 1 or more; null: nobody looked then.
+  /// So many cycles ago, 1 or more; null: that cycle was not looked at.
   const Value* ago(size_t cycles) const {
     return cycles > values_.size() ? nullptr : &values_[values_.size() - cycles];
   }

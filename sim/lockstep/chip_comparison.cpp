@@ -44,7 +44,7 @@ class Ports {
     differs(port, fmt::format("{:08x}", rtl), fmt::format("{:08x}", model));
     return false;
   }
-  /// True if both are valid: then what belongs to it is compared.
+  /// True if both are valid: then what goes with it is compared.
   bool both(const char* port, bool rtl, bool model) { return same(port, rtl, model) && rtl; }
 
   void finish() const {
@@ -53,7 +53,7 @@ class Ports {
   }
 
  private:
-  // The block, or what in it says what its port shows; and what joins the blocks.
+  // The block, or what in it drives its port; and what joins the blocks.
   std::string files() const {
     if (first_block_ == "controller" && first_port_ == "launch_block")
       return "rtl/chip/rp_tile_walk.v, rtl/chip/rp_chip.v";
@@ -78,7 +78,7 @@ void compare_request(Ports& ports, const MemoryRequest& rtl, const MemoryRequest
   if (!ports.same("memory_request_write", rtl.write, model.write)) return;
   ports.same_word("memory_request_address", rtl.address, model.address);
   if (with_id) {
-    const bool write = model.write;  // whose id is the unit's alone
+    const bool write = model.write;  // its id is the unit's alone
     ports.same("memory_request_id", write ? unit_of_id(rtl.id) : rtl.id, write ? unit_of_id(model.id) : model.id);
   }
   if (!model.write) return;

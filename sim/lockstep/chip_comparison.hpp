@@ -8,8 +8,8 @@
 
 namespace raypool::lockstep {
 
-/// Of a chip with so many kinds of intersections. Throws Mismatch, whose title names the first block and port that
-/// differ, with both values; its details have all of them. What belongs to a valid counts only while it is set.
+/// Of a chip with so many kinds of intersections. Throws Mismatch: its title names the first block and port that
+/// differ, with both values; its details have all of them. What goes with a valid counts only while it is set.
 void compare_chip(const ChipOutputs& rtl, const ChipOutputs& model, uint32_t kinds);
 
 /// At the end of a frame.

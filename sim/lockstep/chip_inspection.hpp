@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Looks inside a chip, block by block, so that a report can name the file to look at: blocks that have a rule of their
 // own (block_rules.hpp), and the traverser. Up to the first difference all its blocks have had the same inputs in RTL
-// and model; so the block whose output or state is the first to differ is the one that went wrong.
+// and model; so the block with the first output or state that differs is the one that went wrong.
 #pragma once
 
 #include <cstdint>

@@ -25,8 +25,8 @@ std::string row(const char* name, const Value& rtl, const Value& model) {
   return fmt::format("  {:<24} RTL {:<24} model {:<24}{}\n", name, rtl, model, rtl == model ? "" : "  <-- differs");
 }
 
-std::string quadword_line(const char* who, uint32_t address, uint32_t mask, const Beat& data) {
-  std::string text = fmt::format("  {:<5} {:08x}, word mask {}:", who, address, mask_text(mask, kBeatWords));
+std::string quadword_line(const char* engine, uint32_t address, uint32_t mask, const Beat& data) {
+  std::string text = fmt::format(" {:<5} {:08x}, word mask {}:", engine, address, mask_text(mask, kBeatWords));
   for (uint32_t i = 0; i < kBeatWords; ++i) text += mask >> i & 1 ? ' ' + word_text(data[i]) : " -";
   return text + '\n';
 }
@@ -45,8 +45,8 @@ std::string beat_rows(const Beat& rtl, const Beat& model) {
   return text;
 }
 
-std::string retired_line(const char* who, const RetireEvent& event) {
-  return fmt::format("  {:<5} PC {:>5}: {}\n", who, event.pc, instruction_text(event.instruction));
+std::string retired_line(const char* engine, const RetireEvent& event) {
+  return fmt::format(" {:<5} PC {:>5}: {}\n", engine, event.pc, instruction_text(event.instruction));
 }
 
 // What gives a performance counter its events.

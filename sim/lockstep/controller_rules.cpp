@@ -28,7 +28,7 @@ class LaunchRecordsRule : public BlockRule {
     if (ray_valid_.value() != 0) records_.ray_left(cycle_, ray_shadow_.value() != 0);
     if (contribution_valid_.value() != 0) records_.contribution_left(cycle_);
     if (ended_valid_.value() != 0) records_.kernel_ended(cycle_, static_cast<uint16_t>(ended_exports_.value()));
-    // Nobody may launch while they are all used.
+    // There is no launch while they are all used.
     if (launch_valid_.value() != 0 && !records_.full())
       records_.launch(cycle_, launch_normal_.value(), launch_shadow_.value());
     records_.settle(cycle_++);

@@ -260,8 +260,7 @@ void ChipInspection::check_lane_boxes(uint32_t number) {
   expect(l.given_q.value(), lane.given_slot().has_value(), "rtl/traverser/rp_traverser_lane.v",
          "boxes of a node are tested");
   if (lane.given_slot() && l.given_q.value() != 0) {
-    expect(l.given_slot_q.value(), *lane.given_slot(), "rtl/traverser/rp_traverser_lane.v",
-           "slot whose boxes are tested");
+    expect(l.given_slot_q.value(), *lane.given_slot(), "rtl/traverser/rp_traverser_lane.v", "slot in the box test");
     const uint32_t limit = l.best_key_valid.value() != 0 ? l.best_key.value() : l.box_limit.value();
     expect(limit, lane.hits().limit_key(*lane.given_slot()),
            "rtl/traverser/rp_lane_hits.v, rtl/traverser/rp_traverser_lane.v", "limit of the boxes' test");
@@ -334,7 +333,7 @@ void ChipInspection::check_lane_ports(uint32_t number) {
   expect(w_.leaf_room.flag(number), lane.leaf_room(), "rtl/traverser/rp_leaf_reader.v", "room for a triangle's line");
   const TreeFault& fault = lane.fault();
   constexpr const char* kLane = "rtl/traverser/rp_traverser_lane.v";
-  if (expect(w_.node_fault.flag(number), fault.valid, kLane, "a node that no tree has") && fault.valid)
+  if (expect(w_.node_fault.flag(number), fault.valid, kLane, "fault of a node") && fault.valid)
     expect(w_.node_fault_line.bits(number * kLineBits, kLineBits), fault.line, kLane, "number of that node");
   constexpr const char* kStacks = "rtl/traverser/rp_lane_stacks.v, rtl/traverser/rp_pass_queue.v";
   if (expect(w_.stack_request_valid.flag(number), lane.request_valid(), kStacks, "request of a stack") &&
@@ -414,11 +413,12 @@ void ChipInspection::check_caches() {
   };
   expect_line(w_.node_fill_valid, to_nodes, "a line comes for the node cache");
   expect_line(w_.triangle_fill_valid, to_leaves, "a line comes for the triangle cache");
-  if (to_nodes && w_.node_fill_valid.value() != 0) expect(w_.node_fill_id.value(), line->id, kPort, "whose line comes");
+  if (to_nodes && w_.node_fill_valid.value() != 0)
+    expect(w_.node_fill_id.value(), line->id, kPort, "request that gets its line");
   if (to_leaves && w_.triangle_fill_valid.value() != 0)
-    expect(w_.triangle_fill_id.value(), line->id, kPort, "whose line comes");
+    expect(w_.triangle_fill_id.value(), line->id, kPort, "request that gets its line");
   if (to_nodes || to_leaves) expect_words(w_.fill_data, 0, line->data.data(), 16, kPort, "line that comes");
-  expect(w_.port_fault.value(), model_->port().fault().valid, kPort, "a line that no tree has");
+  expect(w_.port_fault.value(), model_->port().fault().valid, kPort, "a line beyond the tree");
   check_exit();
   lane_ = model_->lanes();
   check_wants(model_->exit().wants(), w_.leaf_want, w_.leaf_want_line, w_.leaf_want_slot, lane_,

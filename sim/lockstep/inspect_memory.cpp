@@ -46,7 +46,7 @@ void UnitInspection::check_memory_alu() {
          "memory ALU: the request is another one");
 }
 
-// The access stage: its registers, and what the cache and its miss-status holding registers say to it.
+// The access stage: its registers, and the answers of the cache and its miss-status holding registers.
 void UnitInspection::check_access() {
   constexpr const char* kAlu = "rtl/compute/rp_mem_alu.v";
   const MemAlu::Access& r = model_->mem().registers().access;
@@ -87,7 +87,7 @@ void UnitInspection::check_loaded(uint32_t warp) {
     const uint32_t word = (issue.operand_a[lane] + issue.instruction->immediate) >> 2 & 3;
     if (mem_.access_word_q.bits(lane * 2, 2) != word)
       return find("rtl/compute/rp_mem_alu.v",
-                  fmt::format("memory ALU: lane {} takes another word of the quadword than its address says", lane));
+                  fmt::format("memory ALU: lane {} takes another word of the quadword than its address names", lane));
     if (mem_.quad_data.word(word) != issue.data[lane])
       return find("rtl/compute/rp_data_cache.v, rtl/compute/rp_mem_alu.v",
                   fmt::format("data cache: {:08x} for lane {}, memory has {:08x}", mem_.quad_data.word(word), lane,
@@ -99,7 +99,7 @@ void UnitInspection::check_miss_status() {
   constexpr const char* kFiles = "rtl/compute/rp_miss_status.v, rtl/compute/rp_data_cache.v";
   const MissStatus::Registers& r = model_->mem().cache().miss_status().registers();
   expect(miss_.busy_q.value(), r.busy, kFiles, "miss-status holding registers that are busy");
-  expect(miss_.filled_q.value(), r.filled, kFiles, "miss-status holding registers whose line has come");
+  expect(miss_.filled_q.value(), r.filled, kFiles, "miss-status holding registers that have their line");
   for (uint32_t busy = r.busy; busy != 0; busy &= busy - 1) {
     const uint32_t number = lowest(busy);
     expect(miss_.line_q.bits(number * 26, 26), r.line[number], kFiles, "miss-status holding register, line");

@@ -170,8 +170,8 @@ void UnitInspection::check_launch() {
     expect(w_.start_lanes.flag(thread), thread < started.threads, "rtl/compute/rp_launcher.v", "lane that is started");
 }
 
-// The guard looks at what the ALU has taken and made; which of an instruction's operands and lanes that is, and when,
-// the ALU says.
+// The guard looks at what the ALU has taken and made; the ALU decides which of an instruction's operands and lanes that
+// is, and when.
 std::string UnitInspection::subnormal_files(uint32_t warp) const {
   const DecodedInstruction* instruction = warp < warps_ ? model_->issue(warp).instruction : nullptr;
   if (instruction == nullptr || !instruction->legal()) return "rtl/compute/rp_subnormal_guard.v, rtl/compute/rp_warp.v";
@@ -190,7 +190,7 @@ void UnitInspection::check_faults() {
   const bool of_alu = code >= FaultCode::Misaligned && code <= FaultCode::RayWordOutside;
   const bool raised =
       of_alu ? alu_fault_ : (warp_faults_ >> (expected.code == FaultCode::None ? rtl.warp : expected.warp) & 1) != 0;
-  // Of one warp and of one kind of ALU: who raises it says what it is, and where.
+  // Of one warp and of one kind of ALU: the block that raises it gives code and PC.
   const bool of_rtl_alu = rtl.code >= FaultCode::Misaligned && rtl.code <= FaultCode::RayWordOutside;
   const bool same_raiser = rtl.code != FaultCode::None && expected.code != FaultCode::None &&
                            rtl.warp == expected.warp && of_rtl_alu == of_alu;
@@ -306,7 +306,7 @@ void UnitInspection::check_instruction_cache() {
            "instruction cache, address");
 }
 
-// Warps come to the fetch arbiter when the model says so, with the PC that it says, or again when a line has come.
+// Warps come to the fetch arbiter when they do in the model, with its PC, or again when a line has come.
 void UnitInspection::check_fetch() {
   for (uint32_t warp = 0; warp < warps_; ++warp) {
     const CycleUnit::Timing& next = model_->timing(warp);
@@ -324,7 +324,7 @@ void UnitInspection::check_fetch() {
     const uint32_t warp = lowest(warps);
     const bool early = (rtl >> warp & 1) != 0;
     const bool stack = early && w_.fetch_pc.bits(warp * 16, 16) != model_->timing(warp).fetch_pc;
-    // That a line has come is told to those who wait for it.
+    // Warps that wait for a line are woken when it has come.
     find(stack ? "rtl/compute/rp_pc_stack.v, rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_warp.v"
          : (refilled_ >> warp & 1) != 0
              ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_compute_unit.v"
@@ -388,7 +388,7 @@ void UnitInspection::check_operands(uint32_t warp) {
     const bool same = (!uses(TaskOperand::OperandA) || w_.operand_a.word(row) == issue.operand_a[lane]) &&
                       (!reads_b || w_.operand_b.word(row) == issue.operand_b[lane]) &&
                       (!uses(TaskOperand::OperandC) || w_.operand_c.word(row) == issue.operand_c[lane]);
-    // Of a triple the instruction buffer says which element is read.
+    // Of a triple the instruction buffer chooses the element that is read.
     const bool triple = is_triple(*unpack(encoding).info);
     if (!same)
       return find(triple ? "rtl/compute/rp_warp.v, rtl/compute/rp_instruction_buffer.v"

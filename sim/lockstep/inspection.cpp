@@ -73,8 +73,8 @@ void Inspection::check() {
   if (!active()) return;
   if (units_.size() > 1) check_arbiters();
   for (uint32_t u = 0; u < units_.size(); ++u) {
-    // The ports' arbiters say which unit gets a response; a unit that gets another's would
-    // be blamed for what it does with it.
+    // The ports' arbiters choose the unit that gets a response; a unit that gets another's would be blamed for what it
+    // does with it.
     const bool response = before_.memory_response_valid && unit_of_id(before_.memory_response.id) == u;
     if (units_.size() > 1 && (units_[u].wires().memory_response_valid_i.value() != 0) != response)
       find("rtl/compute/rp_unit_memory_arbiter.v, rtl/compute/rp_multiprocessor.v",
@@ -87,7 +87,7 @@ void Inspection::find(const char* files, const char* text) {
   if (findings_.empty()) findings_.push_back({(*models_)[0]->now(), files, text});
 }
 
-// Who is chosen in this cycle, given what the RTL's units ask for.
+// The units that are chosen in this cycle, given what the RTL's units ask for.
 void Inspection::check_arbiters() {
   uint32_t ready = 0, busy = 0, requests = 0, imports = 0, exports = 0, frames = 0;
   for (uint32_t u = 0; u < units_.size(); ++u) {
@@ -107,24 +107,24 @@ void Inspection::check_arbiters() {
   const UnitOutputs& out = rtl_->outputs();
   if (out.launch_ready != block_scheduler_.ready() || (out.launch_ready && out.launch_unit != block_scheduler_.unit()))
     find("rtl/compute/rp_block_scheduler.v, rtl/common/rp_round_robin.v",
-         "the launch is offered to another unit than its rule says");
+         "the launch is offered to another unit than its rule chooses");
   if (out.memory_request_valid != memory_.valid() ||
       (out.memory_request_valid && unit_of_id(out.memory_request.id) != memory_.choice()))
     find("rtl/compute/rp_unit_memory_arbiter.v, rtl/compute/rp_port_arbiter.v, rtl/common/rp_round_robin.v",
-         "another unit's memory request is taken than its rule says");
+         "another unit's memory request is taken than its rule chooses");
   else if (out.memory_request_valid && !same_request(out.memory_request, units_[memory_.choice()].wires()))
     find("rtl/compute/rp_unit_memory_arbiter.v, rtl/compute/rp_multiprocessor.v",
          "the memory request is not that of its unit");
   if (out.import_request_valid != imports_.valid() ||
       (out.import_request_valid && out.import_request_unit != imports_.choice()))
     find("rtl/compute/rp_import_arbiter.v, rtl/compute/rp_port_arbiter.v, rtl/common/rp_request_queue.v",
-         "another unit's import request is taken than its rule says");
+         "another unit's import request is taken than its rule chooses");
   if (out.export_valid != exports_.valid() || (out.export_valid && out.export_unit != exports_.choice()))
     find("rtl/compute/rp_port_arbiter.v, rtl/compute/rp_multiprocessor.v, rtl/common/rp_round_robin.v",
-         "another unit's ray is exported than its rule says");
+         "another unit's ray is exported than its rule chooses");
   if (out.frame_valid != frames_.valid() || (out.frame_valid && out.frame_unit != frames_.choice()))
     find("rtl/compute/rp_port_arbiter.v, rtl/common/rp_round_robin.v, rtl/compute/rp_multiprocessor.v",
-         "another unit's contribution is sent than its rule says");
+         "another unit's contribution is sent than its rule chooses");
 }
 
 std::vector<Finding> Inspection::findings() const {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Looks inside the RTL, block by block, so that a report can name the file to look at: each block of a compute unit
-// must do with its inputs, which are the RTL's own, what its rule or the model says. It never fails a run by itself:
-// what a user sees of the machine is what must agree, and what differs inside first only tells where to look.
+// must do with its inputs, which are the RTL's own, what its rule or the model does. It never fails a run by itself:
+// what a user sees of the machine is what must agree, and what differs inside first only shows where to look.
 #pragma once
 
 #include <array>
@@ -63,7 +63,7 @@ class UnitInspection {
     bool piped = false;  // done a fixed number of cycles after its task
     uint32_t latency = 1, depth = 1;
     uint64_t ready_from = 0;                  // cycle
-    uint32_t task = 0;                        // warp whose task is to be in the task register
+    uint32_t task = 0;                        // warp with its task in the task register
     const CycleUnit::Issue* issue = nullptr;  // that task
     std::array<uint8_t, kRing> under_way{};   // [cycle % kRing] warp that is to be done
   };
@@ -127,13 +127,13 @@ class UnitInspection {
   RoundRobin fetch_turn_;
   InstructionCache instruction_cache_;
   uint32_t requests_ = 0, missed_ = 0, first_ = 0, wants_ = 0;
-  uint32_t refilled_ = 0;  // warps whose line came in the cycle before
+  uint32_t refilled_ = 0;  // warps that got their line in the cycle before
   bool lookup_ = false, lookup_hit_ = false;
   uint32_t lookup_warp_ = 0, lookup_pc_ = 0;
   Port port_;
   std::vector<Instance> instances_;
   uint32_t piped_ = 0, paused_ = 0;     // instances that are pipelined; that need a pause between tasks
-  uint32_t tasks_ = 0;                  // instances whose task register is to be valid
+  uint32_t tasks_ = 0;                  // instances with a task register that is to be valid
   std::array<uint32_t, kRing> done_{};  // [cycle % kRing] instances that are to be done
   uint32_t parked_ = 0;
   uint32_t warp_faults_ = 0;  // of the cycle before

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The Verilated chip and its model side by side on the same inputs, all ports of all blocks compared in every cycle. It
-// is a chip itself, so that who draws on it does not know.
+// is a chip itself, so that drawing on it needs no other code.
 #pragma once
 
 #include <memory>
@@ -41,8 +41,8 @@ class LockstepChip : public ChipDevice {
 /// `memory`, the host's, when the first kernel after start() begins; it must outlive the lockstep. clock() throws
 /// LockstepDifference at the first difference, and again at every later call. Counters are compared, and may be found
 /// to differ, when a frame has ended and nothing has moved for some cycles. `name` is for the report. `inspect_until`:
-/// it looks inside the traverser up to this cycle, of all that it is clocked, as LockstepOptions::inspect_until says;
-/// 0: not at all.
+/// it looks inside the traverser up to this cycle, of all that it is clocked, as in LockstepOptions::inspect_until; 0:
+/// not at all.
 std::unique_ptr<LockstepChip> make_lockstep_chip(const Configuration& configuration, std::unique_ptr<ChipDevice> rtl,
                                                  const Memory& memory, const std::string& name = "chip",
                                                  uint64_t inspect_until = 0);

@@ -3,7 +3,7 @@
 // Engine `lockstep`: the RTL and the golden model side by side on the same inputs, compared in every
 // cycle; stops at the first difference.
 //
-// It is a ComputeUnit, so that the chip does not know it has one. docs/develop/lockstep.md says what is compared.
+// It is a ComputeUnit, so that the chip does not know it has one. docs/develop/lockstep.md lists what is compared.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ namespace raypool {
 struct LockstepOptions {
   uint64_t watchdog_cycles =
       20000;  ///< cycles without retirement or port transfer, while busy, that count as a hang; 0 = never
-  /// Whoever is around the unit answers within watchdog_cycles. Otherwise a unit that waits for an answer does not
-  /// hang: how long that may take is for those around it to say.
+  /// The unit's surroundings answer within watchdog_cycles. Otherwise a unit that waits for an answer does not hang:
+  /// they set the limit.
   bool answered_soon = true;
   std::string name = "unit";                          ///< names the device in reports
   std::map<uint32_t, std::string> kernel_names = {};  ///< entry PC -> name of the kernel, for reports
@@ -66,12 +66,12 @@ struct LockstepDifference : std::runtime_error {
   explicit LockstepDifference(const std::string& report, uint64_t inspect_until_cycle = 0)
       : runtime_error(report), inspect_until(inspect_until_cycle) {}
 
-  /// LockstepOptions::inspect_until of a second run, equal but for it, whose report would say what was wrong inside. 0:
-  /// none would, as this one has, or the RTL lacks the signals.
+  /// LockstepOptions::inspect_until of a second run, equal but for it, that would report what was wrong inside. 0: none
+  /// would, as this one has, or the RTL lacks the signals.
   uint64_t inspect_until;
 };
 
-/// Calls `run` with 0, and when it throws a difference of which a look inside would tell more, again with its
+/// Calls `run` with 0, and when it throws a difference that a look inside could narrow down, again with its
 /// inspect_until. A run must start from the same state each time. Throws the difference with the better report.
 void inspect_differences(const std::function<void(uint64_t inspect_until)>& run);
 
@@ -84,7 +84,7 @@ class LockstepUnit : public ComputeUnit {
   virtual std::string uninspected() const = 0;
 };
 
-/// Wraps `rtl`, whose trace it switches on, and a golden model of the same configuration and number of units. The model
+/// Wraps `rtl`, switches on its trace, and adds a golden model of the same configuration and number of units. The model
 /// reads program and data from `memory`, the host's, when the first kernel after reset() or set_argument() starts; it
 /// must outlive the lockstep. clock() throws LockstepDifference at the first difference, and again at every later call.
 std::unique_ptr<LockstepUnit> make_lockstep_unit(const Configuration& configuration, std::unique_ptr<ComputeUnit> rtl,

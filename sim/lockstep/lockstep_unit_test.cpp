@@ -1,4 +1,4 @@
-// The lockstep with a second model in the place of the RTL, whose inputs, trace, outputs and counters a test can alter.
+// The lockstep with a second model in the place of the RTL: a test can alter its inputs, trace, outputs and counters.
 #include "lockstep/lockstep_unit.hpp"
 
 #include <gtest/gtest.h>
@@ -411,7 +411,7 @@ TEST(Lockstep, AWaitForASlowChipIsNoHang) {
   EXPECT_GT(fixture.unit->counts().instructions, 0u);
 }
 
-TEST(Lockstep, AWarpThatWaitsForWhatNobodyWasAskedForHangsHoweverSlowTheChip) {
+TEST(Lockstep, AWarpThatWaitsWithoutARequestHangsHoweverSlowTheChip) {
   LockstepOptions options;
   options.watchdog_cycles = 100;
   options.answered_soon = false;
@@ -466,7 +466,7 @@ TEST(Lockstep, ARunThatIsToFindADifferenceAgainEndsWithoutOne) {
   EXPECT_EQ(fixture.unit->counts().cycles, 30u);
 }
 
-/// What comes of runs that do as `reports` says, one after another: "" is a run without a difference.
+/// What comes of runs with these `reports`, one after another: "" is a run without a difference.
 std::string inspected(const std::vector<std::string>& reports, uint64_t first_until,
                       const std::vector<uint64_t>& expected_runs) {
   std::vector<uint64_t> runs;

@@ -9,7 +9,7 @@
 
 namespace raypool::lockstep {
 
-/// What belongs into the report beside the details.
+/// What the report has beside the details.
 enum class Context : uint8_t {
   Unit,         ///< nothing: no single instruction is to blame
   Warp,         ///< the warp's last instructions

@@ -16,7 +16,7 @@ namespace raypool {
 /// scripts/verilate.sh). Several units may come from one library, and libraries of several configurations may be
 /// loaded side by side; a library is unloaded with its last unit. Throws InputError when the library is missing, was
 /// built for other Verilog parameters than those of `configuration`, or against another version of the compute-unit
-/// interface; the message says how to build it.
+/// interface; the message has the command that builds it.
 std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration,
                                            int units = 1);
 /// Likewise of rtl/chip/rp_chip.v: OUTPUT_DIR/libraypool_chip.so of scripts/verilate.sh --top chip.

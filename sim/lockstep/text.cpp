@@ -32,7 +32,7 @@ std::string result_files(const DecodedInstruction& instruction, const Configurat
                                     : rtl_files({block, "flt_alu", "float_lane"});
     }
     case AluType::Slw:
-      // Of fewer lanes than a task has, the ALU itself says which take what, and when.
+      // Of fewer lanes than a task has, the ALU itself decides which take what, and when.
       return rtl_files({configuration.slow_unit == SlowUnit::Exact ? "slow_exact" : "slow_newton",
                         configuration.slow_groups() > 1 ? "slw_alu" : "slow_lane", "slow_prepare"});
     case AluType::Mem:
@@ -40,7 +40,7 @@ std::string result_files(const DecodedInstruction& instruction, const Configurat
     case AluType::Ray:
       return "rtl/compute/rp_ray_memory.v, rtl/compute/rp_ray_alu.v";
     case AluType::Tid:
-      // What it is told of the launch.
+      // What it is given of the launch.
       return "rtl/compute/rp_tid_alu.v, rtl/compute/rp_compute_unit.v";
     default:
       return rtl_files({std::string(alu_info(instruction.alu()).name) + "_alu"});

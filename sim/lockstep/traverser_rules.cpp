@@ -60,7 +60,7 @@ class TreeCacheRule : public BlockRule {
   uint32_t slot_bits_ = 1;
 };
 
-/// Of significands whose first bits are ones.
+/// Of significands that begin with a one.
 class QuotientDigitsRule : public BlockRule {
  public:
   explicit QuotientDigitsRule(const Block& block) : BlockRule(block) {}
@@ -248,27 +248,27 @@ class TrianglePartsRule : public BlockRule {
   History<Test> begun_;
 };
 
-/// A test is told what its own lane says, which it asked in the cycle before.
+/// A test is given the answer of its own lane, which it asked in the cycle before.
 class TriangleGroupRule : public BlockRule {
  public:
   explicit TriangleGroupRule(const Block& block) : BlockRule(block) {}
-  void forget() override { limit_of_ = best_of_ = kNobody; }
+  void forget() override { limit_of_ = best_of_ = kNoLane; }
   void compare(Findings& findings) override {
-    if (limit_of_ != kNobody) {
+    if (limit_of_ != kNoLane) {
       expect(findings, told_limit_.value(), limit_.word(limit_of_), "limit that a test is told");
       expect(findings, told_scale_.value(), scale_.bits(9 * limit_of_, 9), "scale that a test is told");
     }
-    if (best_of_ == kNobody) return;
+    if (best_of_ == kNoLane) return;
     expect(findings, told_best_t_.value(), best_t_.word(best_of_), "time of the best hit that a test is told");
     expect(findings, told_best_number_.value(), best_number_.word(best_of_), "best triangle that a test is told");
   }
   void take() override {
-    limit_of_ = asks_limit_.value() != 0 ? limit_lane_.value() : kNobody;
-    best_of_ = asks_best_.value() != 0 ? best_lane_.value() : kNobody;
+    limit_of_ = asks_limit_.value() != 0 ? limit_lane_.value() : kNoLane;
+    best_of_ = asks_best_.value() != 0 ? best_lane_.value() : kNoLane;
   }
 
  private:
-  static constexpr uint32_t kNobody = UINT32_MAX;
+  static constexpr uint32_t kNoLane = UINT32_MAX;
 
   Block pipe_ = block().inner("triangles", "triangle_pipe");
   Wire asks_limit_ = wire("asks_limit"), asks_best_ = wire("asks_best"), limit_lane_ = wire("limit_lane"),
@@ -276,7 +276,7 @@ class TriangleGroupRule : public BlockRule {
        best_number_ = wire("best_number_i");
   Wire told_limit_ = wire_of(pipe_, "limit_i"), told_scale_ = wire_of(pipe_, "scale_i"),
        told_best_t_ = wire_of(pipe_, "best_t_i"), told_best_number_ = wire_of(pipe_, "best_number_i");
-  uint32_t limit_of_ = kNobody, best_of_ = kNobody;
+  uint32_t limit_of_ = kNoLane, best_of_ = kNoLane;
 };
 
 void add_cache_rules(std::vector<std::unique_ptr<BlockRule>>& rules, const Block& banks, const TreeCache::Sizes& sizes,

@@ -101,7 +101,7 @@ class Netlist {
     for (size_t word = 0; word < input_values_.size(); ++word) {
       for (uint32_t changed = inputs[word] ^ input_values_[word]; changed != 0; changed &= changed - 1) {
         const size_t source = gates_.size() + word * 32 + static_cast<uint32_t>(__builtin_ctz(changed));
-        tell(first_sink_[source], first_sink_[source + 1]);
+        update(first_sink_[source], first_sink_[source + 1]);
       }
       input_values_[word] = inputs[word];
     }
@@ -167,7 +167,7 @@ class Netlist {
     return value;
   }
 
-  /// The sinks of every source in one list; first_sink_ says where those of a source begin.
+  /// The sinks of every source in one list; first_sink_ has where those of a source begin.
   void join(const std::vector<std::vector<Sink>>& sinks) {
     for (const auto& list : sinks) {
       first_sink_.push_back(static_cast<uint32_t>(sinks_.size()));
@@ -211,7 +211,7 @@ class Netlist {
     (gates_[gate].level == kFlop ? waiting_ : levels_[gates_[gate].level]).push_back(gate);
   }
 
-  void tell(uint32_t first, uint32_t last) {
+  void update(uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; ++i) {
       Gate& gate = gates_[sinks_[i].gate];
       gate.index ^= sinks_[i].pin;
@@ -222,7 +222,7 @@ class Netlist {
   void change(Gate& gate) {
     gate.value = !gate.value;
     ++gate.toggles;
-    tell(gate.first_sink, gate.last_sink);
+    update(gate.first_sink, gate.last_sink);
   }
 
   FILE* file_ = nullptr;

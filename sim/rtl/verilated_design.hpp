@@ -45,7 +45,7 @@ inline void read_color(const Port& port, FrameContribution& contribution) {
   for (uint32_t i = 0; i < 3; ++i) contribution.rgb[i] = bits(port, 32 * i, 32);
 }
 
-/// A design whose clock and reset are clk_i and rst_ni.
+/// A design with clock clk_i and reset rst_ni.
 template <typename Top>
 class VerilatedDesign {
  public:

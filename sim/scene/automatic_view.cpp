@@ -262,7 +262,7 @@ class Viewfinder {
 View automatic_view(const Scene& scene, const ViewChanges& changes) {
   View view;
   view.centre = scene.centre;
-  // Without a direction upwards, and for an eye that looks at itself, there is nothing to find: the checks will tell.
+  // Without a direction upwards, and for an eye that looks at itself, there is nothing to find: the checks report it.
   if (length(changes.up.value_or(view.camera.up).as<double>()) > 0 &&
       !(changes.eye && changes.look_at && *changes.eye == *changes.look_at)) {
     view = Viewfinder(scene, changes).find();

@@ -125,7 +125,7 @@ std::vector<Model> models() {
          }
        },
        none},
-      {"a table whose legs go through its top", 0.2,
+      {"a table with legs that go through its top", 0.2,
        [](MeshBuilder& m) {
          m.box({0, 1, 0}, {3, 1.4, 2});
          for (const double x : {0.1, 2.6}) {

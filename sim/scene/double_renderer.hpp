@@ -13,7 +13,7 @@
 namespace raypool {
 
 /// Of `options` size, depth, reflections and threads; `tracer`, of which it takes the tree, and `image` as for
-/// render_native(). `decisions`, of the picture's size, are told unless null. Throws InputError as render_native()
+/// render_native(). `decisions`, of the picture's size, are filled unless null. Throws InputError as render_native()
 /// does.
 FrameBuffer render_in_double(const Scene& scene, const MemoryImage& image, const Tracer& tracer,
                              const NativeOptions& options, NativeStatistics& statistics, PixelDecisions* decisions);

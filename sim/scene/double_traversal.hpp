@@ -16,7 +16,7 @@ struct DoubleHit {
   double t = 0;
 };
 
-/// On which side of an edge a ray passes is decided with 113 bits where 53 leave it open; an edge belongs to the
+/// On which side of an edge a ray passes is decided with 113 bits where 53 leave it open; an edge is part of the
 /// triangles on both sides. Rays have a direction of any length but zero, both vectors finite; hits with 0 < t < limit
 /// count. `bvh` must outlive it.
 class DoubleTraversal {

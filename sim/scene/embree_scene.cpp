@@ -21,7 +21,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, EmbreeMode mode) {
   const RTCDevice device = embree_device();
   scene_ = rtcNewScene(device);
   rtcSetSceneFlags(scene_, mode == EmbreeMode::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-  // Splitting triangles pays in large scenes; and Embree ends the program where floats cannot tell the parts apart.
+  // Splitting triangles pays in large scenes; and Embree ends the program where the parts are equal in floats.
   rtcSetSceneBuildQuality(scene_,
                           scene.triangles.size() < kFewTriangles ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);

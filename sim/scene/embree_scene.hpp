@@ -1,4 +1,4 @@
-// What Embree says of the rays of a scene: the oracle of our hits, and an engine of its own.
+// Embree's hits of a scene's rays: the oracle of our hits, and an engine of its own.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -12,7 +12,7 @@
 namespace raypool {
 
 enum class EmbreeMode : uint8_t {
-  Robust,  ///< no ray passes between triangles that share an edge, Embree says
+  Robust,  ///< no ray passes between triangles that share an edge, as Embree promises
   Fast,    ///< its default
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCentreSteps = 8;  // to a diagonal at most, of which centres are multiples: short numbers
 constexpr double kLostShape = 0.1;  // of a triangle's longest edge: by less than this its corners may be off
-constexpr int kDoubleDigits = 17;   // that tell any two doubles apart
+constexpr int kDoubleDigits = 17;   // in which any two doubles differ
 
 double largest(const Vec3d& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 

@@ -1,4 +1,4 @@
-// Scenes at map coordinates: the same picture as near the origin, and everything told in the file's coordinates.
+// Scenes at map coordinates: the same picture as near the origin, and everything reported in the file's coordinates.
 #include "scene/far_places.hpp"
 
 #include <fmt/format.h>

@@ -22,7 +22,7 @@ struct GltfForm {
   const char* rule;        ///< ends the sentence about one that is something else
 };
 
-/// Quantised positions and joints' weights are allowed whether or not the file says KHR_mesh_quantization.
+/// Quantised positions and joints' weights are allowed whether or not the file names KHR_mesh_quantization.
 extern const GltfForm kGltfPositions, kGltfIndices, kGltfJoints, kGltfWeights, kGltfMatrices, kGltfRotations;
 
 class GltfAccessors {

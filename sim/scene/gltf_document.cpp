@@ -1,6 +1,6 @@
-// Assimp believes what a document says of itself: it reads beyond buffers, leaves out triangles whose indices are out
-// of range, takes whole numbers for floats, follows nodes without end and poses skins wrongly. So the document is
-// checked here, and only plain geometry is handed on.
+// Assimp trusts what a document declares: it reads beyond buffers, leaves out triangles with indices out of range,
+// takes whole numbers for floats, follows nodes without end and poses skins wrongly. So the document is checked here,
+// and only plain geometry is handed on.
 #include "scene/gltf_document.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ void check_extensions(const JsonPlace& root) {
   const std::optional<JsonPlace> required = root.find("extensionsRequired");
   for (size_t i = 0; required && i < required->size(); ++i) {
     const std::string name = required->at(i).text();
-    // These are read; of materials and textures everything that has no counterpart is left out, and told.
+    // These are read; of materials and textures everything that has no counterpart is left out, and reported.
     const std::vector<std::string> harmless = {
         "KHR_lights_punctual",     "KHR_materials_",     "KHR_texture_", "EXT_texture_",
         "MSFT_texture_",           "KHR_animation_",     "KHR_xmp",      "KHR_mesh_quantization",

@@ -95,10 +95,10 @@ std::string GltfFile::read_binary(const std::string& bytes) {
   }
   const uint64_t length = word_at(bytes, 8);
   if (length > bytes.size()) throw cut_off(length);
-  // All of the file is there, and its header or a chunk says something else.
+  // All of the file is there, and its header or a chunk declares another size.
   const auto contradicts = [&](uint64_t end) {
     return InputError(
-        fmt::format("{}: its chunks go to byte {}, but its header says that the file has {} bytes, and it "
+        fmt::format("{}: its chunks go to byte {}, but its header declares a file of {} bytes, and it "
                     "has {}; export it again",
                     path_, end, length, bytes.size()));
   };

@@ -12,15 +12,15 @@ namespace raypool {
 
 class GltfFile {
  public:
-  /// Text or binary, as the first bytes say. Throws InputError.
+  /// Text or binary, by the first bytes. Throws InputError.
   explicit GltfFile(const std::string& path);
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;
 
   const std::string& path() const { return path_; }
   JsonPlace root() const { return {json_, path_}; }
-  /// The bytes of a buffer, whose place in the document is given: from a file beside this one, a data URI or the binary
-  /// chunk. As many as its byteLength says.
+  /// The bytes of a buffer at this place of the document: from a file beside this one, a data URI or the binary chunk.
+  /// As many as its byteLength.
   const std::string& buffer(const JsonPlace& place, size_t index);
 
  private:

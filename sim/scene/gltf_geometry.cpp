@@ -23,7 +23,7 @@ Json numbers(const JsonPlace& place, size_t count) {
   return result;
 }
 
-/// The members of a node that say where it is.
+/// The members of a node that place it.
 Json transform_json(const JsonPlace& place) {
   Json json = Json::object();
   if (const std::optional<JsonPlace> matrix = place.find("matrix")) {
@@ -97,7 +97,7 @@ GltfGeometry::Written GltfGeometry::write(const void* elements, size_t count, co
   return {json_accessors_.size() - 1, count};
 }
 
-/// Adds the targets, each as much as its weight says.
+/// Adds the targets, each by its weight.
 void GltfGeometry::morph(const JsonPlace& place, const Pose& pose, std::vector<float>& positions) {
   const std::optional<JsonPlace> targets = place.find("targets");
   if (!targets || pose.weights.empty()) return;
@@ -404,7 +404,7 @@ size_t GltfGeometry::add_node(const JsonPlace& place, size_t index, int depth, b
   return number;
 }
 
-/// The scene that the file names, or else its first one; without any, all nodes that are nobody's children.
+/// The scene that the file names, or else its first one; without any, all nodes that are children of none.
 void GltfGeometry::add_scene() {
   const std::optional<JsonPlace> scenes = root_.find("scenes"), chosen = root_.find("scene");
   if (scenes && scenes->size() > 0) {

@@ -79,7 +79,7 @@ class GltfGeometry {
   std::map<std::string, Written> written_;                       // accessors without a pose, by place
   std::map<std::string, std::pair<Written, uint32_t>> indices_;  // and the largest of them
   std::map<std::string, std::vector<Transform>> skins_;          // by place
-  std::set<std::string> counted_;                                // primitives whose losses have been
+  std::set<std::string> counted_;                                // primitives: their losses have been
   std::set<size_t> reached_;                                     // nodes of the file
   std::optional<std::vector<std::optional<size_t>>> parents_;    // of all nodes of the file, once they are needed
   Json json_nodes_ = Json::array(), json_meshes_ = Json::array(), json_accessors_ = Json::array(),

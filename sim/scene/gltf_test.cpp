@@ -335,9 +335,8 @@ TEST_F(Gltf, AFileThatContradictsItselfIsNotCalledCutOff) {
   for (const size_t length : {bytes.size() - 4, size_t{100}, size_t{12}, size_t{0}}) {
     for (size_t i = 0; i < 4; ++i) bytes[8 + i] = static_cast<char>(length >> (8 * i) & 255);
     const std::string path = write("a.glb", bytes), message = refusal([&] { load_gltf(path); });
-    EXPECT_NE(
-        message.find(fmt::format("its header says that the file has {} bytes, and it has {};", length, bytes.size())),
-        std::string::npos)
+    EXPECT_NE(message.find(fmt::format("its header declares a file of {} bytes, and it has {};", length, bytes.size())),
+              std::string::npos)
         << message;
     EXPECT_EQ(message.find("cut off"), std::string::npos) << message;
   }
@@ -355,7 +354,7 @@ TEST_F(Gltf, BrokenFilesAreRefusedWithTheirPlace) {
   Document document = good;
   const std::string whole = glb(good.finished(), good.bytes);
   for (size_t size = 1; size < whole.size(); ++size) expect_refusal_of(whole.substr(0, size), "");
-  std::string longer = whole;  // its last chunk says 48 bytes, of which there are 44
+  std::string longer = whole;  // its last chunk declares 48 bytes, of which there are 44
   longer[whole.size() - 44 - 8] = 48;
   expect_refusal_of(longer, "the file is cut off");
   const auto broken = [&](const std::string& pointer, const Json& value, const std::string& part) {
@@ -451,7 +450,7 @@ TEST_F(Gltf, NamesDoNotSpoilALineOfOutput) {
   EXPECT_EQ(load(document).scene.cameras[2], "Si  [1mde");
 }
 
-TEST_F(Gltf, TheEndingSaysTheFormat) {
+TEST_F(Gltf, TheEndingGivesTheFormat) {
   const std::string other = write("a.stl", "solid");
   EXPECT_EQ(
       refusal([&] { load_scene(other); }),

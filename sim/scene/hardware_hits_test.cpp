@@ -23,7 +23,7 @@ ChipConfiguration with(TraverserName traverser) {
   return chip;
 }
 
-/// The traverser's memory, and no tree.
+/// The traverser's memory, with a malformed tree.
 class Machine {
  public:
   explicit Machine(const Scene& scene) : tree_(make_tree_file(scene)) {
@@ -88,7 +88,7 @@ Ray to_ray(const RayQuery& query, bool shadow) {
 }
 
 struct Compared {
-  int rays = 0, going_on = 0, other = 0;  ///< other: what the engines say of it has other bits
+  int rays = 0, going_on = 0, other = 0;  ///< other: the engines' hit has other bits
 };
 
 void compare(const Ray& ray, const Machine& machine, const Tracer& hardware, const Tracer& engine, Compared& compared) {

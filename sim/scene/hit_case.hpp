@@ -1,5 +1,5 @@
-// A ray and a few triangles, as a line of a corpus of cases (docs/use/referee.md), and what somebody says that the ray
-// hits, as a line of answers: JSON, every float in hexadecimal digits, so that none is rounded.
+// A ray and a few triangles, as a line of a corpus of cases (docs/use/referee.md), and an implementation's hit of the
+// ray, as a line of answers: JSON, every float in hexadecimal digits, so that none is rounded.
 #pragma once
 
 #include <array>

@@ -180,7 +180,7 @@ class HitsComparison {
   // The fast way and the chip's.
   static void require_same(const Ray& ray, bool same) {
     if (same) return;
-    throw std::logic_error(fmt::format("of a ray of pixel ({}, {}) our two ways through the tree say different things",
+    throw std::logic_error(fmt::format("for a ray of pixel ({}, {}) our two walks of the tree find different hits",
                                        ray[word::kPixel] & 0xffffu, ray[word::kPixel] >> 16));
   }
 

@@ -16,7 +16,7 @@ namespace raypool {
 /// (113-bit arithmetic on the float inputs).
 enum class Passage : uint8_t {
   Inside,  ///< well inside the triangle
-  Border,  ///< on an edge, or nearer to it than single precision can tell
+  Border,  ///< on an edge, or nearer to it than single precision resolves
   Outside,
   Parallel,  ///< the triangle has no area as seen from the ray
 };
@@ -37,7 +37,7 @@ struct ExactRay {
 };
 ExactHit exact_hit(const Scene& scene, uint32_t triangle, const ExactRay& ray);
 
-/// What one side says about a ray.
+/// What one side finds for a ray.
 struct HitAnswer {
   bool hit = false;
   uint32_t triangle = 0;

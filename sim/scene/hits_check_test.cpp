@@ -28,7 +28,7 @@ TEST(HitsCheck, OursAgreeWithEmbree) {
   }
 }
 
-TEST(HitsCheck, ExactVerdictTellsInsideBorderAndOutside) {
+TEST(HitsCheck, ExactVerdictDistinguishesInsideBorderAndOutside) {
   Scene scene;
   MeshBuilder mesh(scene, 1);
   mesh.add_material("grey", {0.5f, 0.5f, 0.5f}, {});

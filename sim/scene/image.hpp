@@ -1,4 +1,4 @@
-// The frame buffer, whose content does not depend on the order of contributions, and the way from it to a PNG file.
+// The frame buffer, with a content that does not depend on the order of contributions, and writing it as a PNG file.
 #pragma once
 
 #include <array>

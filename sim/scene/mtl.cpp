@@ -15,7 +15,7 @@ constexpr float kLargestColour = 1000;
 constexpr float kGrey = 0.5f;
 constexpr float kTexturedKd = 0.6f;  // of a material with a texture and no Kd
 
-/// Linear RGB of IEC 61966-2-1, whose white is D65; what is outside of it becomes 0.
+/// Linear RGB of IEC 61966-2-1, with white D65; what is outside of it becomes 0.
 Vec3 rgb_of_xyz(const Vec3& xyz) {
   const Vec3d c = xyz.as<double>();
   const Vec3d rgb{3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z,
@@ -60,11 +60,11 @@ class MtlReader {
   }
 
  private:
-  /// The material whose statements are read; before the first name it is nobody's.
+  /// The material of the statements that are read; before the first name there is none.
   struct Reading {
     MtlMaterial material;
     bool named = false, kd = false, map_kd = false, alpha_map = false;
-    std::optional<bool> seen_through;  // as d says, or else Tr
+    std::optional<bool> seen_through;  // by d, or else Tr
     bool has_d = false;
   };
 
@@ -151,7 +151,7 @@ void tell_of_materials(std::vector<std::string>& warnings, const std::string& pa
     mirrors += material.illum && material.reflects();
     assumed += !material.illum;
   }
-  // Where nothing is left out and nothing assumed, there is nothing to say.
+  // Where nothing is left out and nothing assumed, there is nothing to report.
   if (highlights > 0 || assumed > 0) {
     std::string text;
     const auto add = [&](const char* as, size_t count, const char* illum) {

@@ -1,4 +1,4 @@
-// Material libraries of OBJ files (MTL). docs/use/scenes.md, "OBJ files", says what is read.
+// Material libraries of OBJ files (MTL). docs/use/scenes.md, "OBJ files", lists what is read.
 #pragma once
 
 #include <optional>
@@ -25,8 +25,8 @@ struct MtlMaterial {
 /// Adds the materials of the file in its order. Throws InputError naming file and line.
 void read_mtl(const std::string& path, std::vector<MtlMaterial>& materials);
 
-/// A sentence for each kind of thing about the materials that are drawn as something else: used[i] says whether a
-/// triangle has materials[i].
+/// A sentence for each kind of thing about the materials that are drawn as something else: used[i]: a triangle has
+/// materials[i].
 void tell_of_materials(std::vector<std::string>& warnings, const std::string& path,
                        const std::vector<MtlMaterial>& materials, const std::vector<bool>& used);
 

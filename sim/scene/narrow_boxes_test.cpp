@@ -179,8 +179,8 @@ TEST(NarrowBoxes, FewerBitsVisitMore) {
   EXPECT_GT(visits(6), 1.05 * visits(8));
 }
 
-// What the comparisons above would notice: boxes that miss by one unit of a plane's number.
-TEST(NarrowBoxes, ABoxThatIsAUnitTooSmallIsNoticed) {
+// What the comparisons above would detect: boxes that miss by one unit of a plane's number.
+TEST(NarrowBoxes, ABoxThatIsAUnitTooSmallIsDetected) {
   const Scene scene = make_cornell(0.3);
   const Traversal floats(scene);
   for (const int side : {0, 1}) {

@@ -1,5 +1,5 @@
 // The triangle test with significands of few bits where the engines' has double: candidates for one definition that
-// hardware and native code share. docs/studies/test-widths.md says what each does to pictures; engines do not use it.
+// hardware and native code share. docs/studies/test-widths.md shows what each does to pictures; engines do not use it.
 #pragma once
 
 #include <cstdint>

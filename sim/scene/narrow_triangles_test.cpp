@@ -1,5 +1,5 @@
-// Triangle tests of fewer bits: with 53 the engines' own test, with fewer what the header says, whatever the tree, and
-// with no gap between triangles.
+// Triangle tests of fewer bits: with 53 the engines' own test, with fewer what the header defines, whatever the tree,
+// and with no gap between triangles.
 #include "scene/narrow_triangles.hpp"
 
 #include <gtest/gtest.h>
@@ -223,9 +223,9 @@ TEST(NarrowTriangles, With24BitsEveryStepIsOneOfFloats) {
   EXPECT_GT(from_plane, 1000);
 }
 
-// Triangles that are seen edge-on but for rounding, of which the plane says anything: those in front of the ray are hit
+// Triangles that are seen edge-on but for rounding, with a plane that gives any t: those in front of the ray are hit
 // all the same, somewhere in their box, and those behind it are not.
-TEST(NarrowTriangles, ATriangleInFrontIsHitWhateverItsPlaneSays) {
+TEST(NarrowTriangles, ATriangleInFrontIsHitWhateverItsPlaneGives) {
   std::mt19937 random(6);
   const auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
   const auto whole = [&](int below) { return static_cast<float>(random() % static_cast<unsigned>(below)); };

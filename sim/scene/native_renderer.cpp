@@ -224,8 +224,8 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   const uint32_t tile_width = 1u << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
   Memory memory = image.memory;
 
-  // Tiles, or parts of several, are handed out one at a time. Who gets which does not matter: pictures and counts are
-  // sums.
+  // Tiles, or parts of several, are handed out one at a time. Which thread gets which does not matter: pictures and
+  // counts are sums.
   const uint32_t columns = (options.width + tile_width - 1) / tile_width;
   const uint64_t tiles = uint64_t{columns} * ((options.height + tile_height - 1) / tile_height);
   const bool in_parts = !options.parts.empty();

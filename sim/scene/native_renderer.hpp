@@ -27,7 +27,7 @@ MemoryImage build_memory(const Program& program, const Scene& scene);
 
 /// A secondary ray's origin leaves its surface by this share of the sum of its hit's largest coordinate and t: four
 /// times the most by which a rounding of the kernels is off, and four times that of t, which has 24 bits in every
-/// machine; more where directions, of this length at most, are longer than 2. docs/studies/offset.md says why that is
+/// machine; more where directions, of this length at most, are longer than 2. docs/studies/offset.md shows why that is
 /// enough.
 double offset_share(double longest_direction, uint32_t significand = arith::kFullSignificand);
 
@@ -38,7 +38,7 @@ CameraNumbers camera_numbers(const Scene& scene, uint32_t width, uint32_t height
 /// The length of the longest direction of such a picture's eye rays; reflections keep it.
 double longest_direction(const CameraNumbers& numbers, uint32_t width, uint32_t height);
 
-/// The kernel arguments of a frame (namespace argument), for a machine whose floats have such a significand. Throws
+/// The kernel arguments of a frame (namespace argument), for a machine with floats of such a significand. Throws
 /// InputError unless width and height lie in 1 .. 65535.
 std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
                                                   uint32_t contents, uint32_t significand = arith::kFullSignificand);

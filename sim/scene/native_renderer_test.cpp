@@ -121,7 +121,7 @@ TEST(NativeRenderer, PictureDoesNotDependOnThreadsOrTiles) {
   }
 }
 
-TEST(NativeRenderer, DrawsInPartsAndSaysWhatEachTakes) {
+TEST(NativeRenderer, DrawsInPartsAndReportsWhatEachTakes) {
   NativeOptions options = size(40, 32, 3);
   const Rendered whole = render(make_cornell(), options);  // in tiles of 8x8
   std::vector<NativeWork> work;

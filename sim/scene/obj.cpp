@@ -58,7 +58,7 @@ class ObjReader {
     places_.put_into(scene_, places_.centre(corners_));
     scene_.name = fs::path(path_).stem().string();
     add_triangles();
-    tell();
+    add_warnings();
     return std::move(scene_);
   }
 
@@ -250,7 +250,7 @@ class ObjReader {
     warn_of_faces(scene_.warnings, odd, [&](size_t line) { return fmt::format("{}:{}: the face", path_, line); });
   }
 
-  void tell() {
+  void add_warnings() {
     std::vector<std::string>& warnings = scene_.warnings;
     const auto more = [](size_t count) { return count == 1 ? "" : fmt::format(" (and {} more)", count - 1); };
     if (!missing_libraries_.empty()) {

@@ -53,7 +53,7 @@ bool read_float(std::string_view word, float& value) { return read_number(word, 
 
 bool read_double(std::string_view word, double& value) {
   if (!read_number(word, value)) return false;
-  // Next to the middle of two numbers of single precision the text decides, whose end double may have lost.
+  // Next to the middle of two numbers of single precision the text decides: double may have lost its end.
   const double above = std::nextafter(value, INFINITY), below = std::nextafter(value, -INFINITY);
   if (static_cast<float>(above) == static_cast<float>(below)) return true;
   float single = 0;

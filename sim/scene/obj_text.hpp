@@ -37,7 +37,7 @@ std::string_view next_word(std::string_view& text);
 std::vector<std::string_view> words_of(std::string_view text);
 std::string_view trimmed(std::string_view text);
 
-/// Reads a decimal number and nothing after it; the result may be infinite or NaN if the text says so.
+/// Reads a decimal number and nothing after it; the result may be infinite or NaN if the text is.
 bool read_float(std::string_view word, float& value);
 /// The same in double; rounded to single precision it is what read_float() reads.
 bool read_double(std::string_view word, double& value);

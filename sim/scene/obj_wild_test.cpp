@@ -21,7 +21,7 @@ class ObjInTheWild : public FileFixture {
     return load("mtllib m.mtl\n" + text);
   }
   static Material first(const Scene& scene) { return scene.materials.at(scene.triangle_materials.at(0)); }
-  /// Of a triangle whose material has these statements.
+  /// Of a triangle that has a material with these statements.
   Scene with_material(const std::string& statements) const {
     return load(kOneTriangle + "usemtl a\nf 1 2 3\n", "newmtl a\n" + statements);
   }

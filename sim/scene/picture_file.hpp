@@ -16,7 +16,7 @@ struct Picture {
 Picture read_png(const std::string& path);
 
 /// A machine's picture passes when at most this share of its pixels is off from double precision, one pixel by so much
-/// of 255 or more in any channel: a step of 1 is rounding, and nobody sees it.
+/// of 255 or more in any channel: a step of 1 is rounding, and invisible.
 inline constexpr int kOffByMore = 2;
 inline constexpr double kMostOff = 0.01;
 

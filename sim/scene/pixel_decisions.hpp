@@ -61,7 +61,7 @@ class PixelDecisions {
 
 /// How engine `native` asks what a ray meets: NativeOptions::trace.
 using TraceRay = std::function<bool(const Ray&, Intersection&)>;
-/// The same answers as `trace`, of which `decisions` are told.
+/// The same answers as `trace`, recorded in `decisions`.
 TraceRay told(TraceRay trace, PixelDecisions& decisions);
 
 /// A picture with what its rays have come to.

@@ -1,5 +1,5 @@
-// PLY files as scenes: what the header declares, value by value. Not by Assimp 5.2, whose reader takes a file that is
-// cut off for a whole one, with made-up corners, and shifts binary data that begin with the byte of a line feed.
+// PLY files as scenes: what the header declares, value by value. Not by Assimp 5.2: its reader takes a file that is cut
+// off for a whole one, with made-up corners, and shifts binary data that begin with the byte of a line feed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -186,7 +186,7 @@ class Values {
   }
   /// Text has each element on a line of its own.
   void end() {
-    if (format_ == Format::Text && !next_word(line_).empty()) fail("has more values than the header says");
+    if (format_ == Format::Text && !next_word(line_).empty()) fail("has more values than the header declares");
   }
 
   double next(Type type) {
@@ -194,7 +194,7 @@ class Values {
     const std::string_view word = next_word(line_);
     double value = 0;
     if (word.empty() && place_ >= data_.size()) cut_off();
-    if (word.empty()) fail("has fewer values than the header says");
+    if (word.empty()) fail("has fewer values than the header declares");
     if (!read_all(word, value)) fail(fmt::format("has '{}', which is not a number", word.substr(0, 20)));
     return value;
   }

@@ -20,9 +20,9 @@ struct RayQuery {
 /// or made of products so small that floats have lost digits of them.
 inline constexpr float kLeastWeight = 0x1p-100f;
 /// What is left of a sum is a smaller share of its terms than this: some corners lie behind the ray's origin. Then the
-/// terms' errors, of floats, would be more than t bears whose error is that of a float (docs/studies/offset.md).
+/// terms' errors, of floats, would be more than t may have, with the error of one float (docs/studies/offset.md).
 inline constexpr double kCancelled = 0.5;
-/// Of Bvh: nodes on the way from the root to a leaf.
+/// Of Bvh: nodes on the path from the root to a leaf.
 inline constexpr int kMaxDepth = 80;
 
 /// Times t_scale, internal t is the ray's.

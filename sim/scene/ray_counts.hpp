@@ -14,11 +14,11 @@ struct RayCounts {
     uint64_t ended = 0;       ///< traced, and hit nothing; shadow rays: are blocked
     uint64_t weightless = 0;  ///< traced, though nothing that they find can change the picture
     uint64_t futile = 0;      ///< ended or weightless or both: added nothing to the picture
-    uint64_t left_out = 0;    ///< not traced, as chip.culling says
+    uint64_t left_out = 0;    ///< not traced, because of chip.culling
   };
   Kind eye, reflection, shadow;
 
-  /// `ray` has been traced; `goes_on` says that a kernel gets its intersection.
+  /// `ray` has been traced; `goes_on`: a kernel gets its intersection.
   void count(const Ray& ray, bool goes_on);
   void add(const RayCounts& other);
   /// All rays have been counted: what is missing was left out. `hits` were given to kernels that cast a shadow ray for

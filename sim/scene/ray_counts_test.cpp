@@ -50,7 +50,7 @@ TEST(RayCounts, AShadowRayWeighsWhatTheFrameBufferAdds) {
   EXPECT_EQ(counts.shadow.futile, 1u);
 }
 
-TEST(RayCounts, InVainIsEndedOrWeightlessOnce) {
+TEST(RayCounts, WastedIsEndedOrWeightlessOnce) {
   RayCounts counts;
   counts.count(ray_of(kShadowFlags, 1, 0, 0), true);
   EXPECT_EQ(counts.shadow.futile, 0u);

@@ -143,7 +143,7 @@ SceneFile load_file(const std::string& path, const std::string& camera) {
   return file;
 }
 
-/// With what the file does not say chosen to go with the rest.
+/// With what the file leaves open chosen to go with the rest.
 View view_of_file(const SceneFile& file, ViewChanges changes) {
   if (!changes.light && file.light) changes.light = file.light->position;
   View view;

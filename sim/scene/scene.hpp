@@ -99,7 +99,7 @@ struct SceneOptions {
   std::string camera;  ///< of a glTF file, by name; empty: its first one
 };
 
-/// `name_or_path` is "cornell", "room" or the path of a file, whose ending says its format. Throws InputError.
+/// `name_or_path` is "cornell", "room" or the path of a file; its ending gives its format. Throws InputError.
 Scene load_scene(const std::string& name_or_path, const SceneOptions& options = {});
 
 /// Closed box of 5.5 m with two blocks, one of them a mirror, camera and light inside.

@@ -25,7 +25,7 @@ class SceneCache {
   /// `folder` is made when something is kept in it.
   explicit SceneCache(std::string folder, uint64_t limit = kLimit) : folder_(std::move(folder)), limit_(limit) {}
 
-  /// What load_scene() and Traversal use: none until a program says where. Not to be changed while others use it.
+  /// What load_scene() and Traversal use: none until a program sets it. Not to be changed while others use it.
   static const std::optional<SceneCache>& of_program() { return of_program_; }
   static void use(std::optional<SceneCache> cache) { of_program_ = std::move(cache); }
 

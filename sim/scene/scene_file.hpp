@@ -12,7 +12,7 @@ struct SceneFile {
   Scene scene;  ///< its camera and light mean nothing
   std::optional<Camera> camera;
   std::optional<PointLight> light;
-  std::optional<Vec3> up;  ///< as the format says
+  std::optional<Vec3> up;  ///< as the format defines
 };
 
 /// glTF 2.0, text or binary. `camera`: name of a camera or of its node; empty: the first one that can be used.

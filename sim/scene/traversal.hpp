@@ -35,7 +35,7 @@ struct TraversalCounts {
   uint64_t blocks = 0;     ///< leaves
   uint64_t triangles = 0;  ///< triangles in them
 };
-/// What a ray does at a node, whose four boxes it tests, or at a leaf, all of whose triangles it tests.
+/// What a ray does at a node, where it tests four boxes, or at a leaf, where it tests all triangles.
 struct Visit {
   uint32_t place = 0;     ///< number of the node; of the leaf's first triangle, counted leaf by leaf
   uint8_t triangles = 0;  ///< of the leaf; 0: a node
@@ -53,8 +53,8 @@ using VisitList = std::vector<Visit>;
 /// A direction that is zero, infinite or NaN, an origin that is not finite or further than 1e18 from the scene, and a
 /// limit that is NaN or not above zero hit nothing.
 ///
-/// A ray whose visits nobody asks for takes the fast way, through nodes of eight (wide_bvh.hpp); else it walks the tree
-/// of bvh(), which is the chip's. The answer is the same.
+/// A ray without a list for its visits takes the fast way, through nodes of eight (wide_bvh.hpp); else it walks the
+/// tree of bvh(), which is the chip's. The answer is the same.
 class Traversal {
  public:
   explicit Traversal(const Scene& scene);
@@ -62,7 +62,7 @@ class Traversal {
   bool nearest(const RayQuery& ray, Hit& hit, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
   /// Any hit at all; visits fewer nodes than nearest().
   bool occluded(const RayQuery& ray, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
-  /// The same answers, the fast way; `visits` is told what is visited on it.
+  /// The same answers, the fast way; `visits` records what is visited on it.
   bool nearest(const RayQuery& ray, Hit& hit, WideVisits& visits) const;
   bool occluded(const RayQuery& ray, WideVisits& visits) const;
   /// The same answer as nearest(), from every triangle in turn. For tests.
@@ -70,22 +70,22 @@ class Traversal {
 
   const Bvh& bvh() const { return bvh_; }
   const WideBvh& wide_bvh() const { return wide_; }
-  /// What rays that visited this on the fast way, from so many places on, visit in bvh(), about: some nodes are told
+  /// What rays that visited this on the fast way, from so many places on, visit in bvh(), about: some nodes are listed
   /// several times, and here and there they come to some that they miss on the other way. They are appended.
   void places_of(const WideVisits& visits, size_t from, VisitList& places) const;
   /// Makes every box of bvh() what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
   /// `box_bits`, 6 .. 16: boxes are then tested in integers of so many bits (narrow_boxes.hpp); 0: in floats.
   void compress_nodes(uint32_t box_bits = 0);
-  /// From now on nearest() and occluded() test triangles so, whoever asks for visits or not, but for those who ask for
-  /// WideVisits; boxes are in floats, or in integers if compress_nodes() says so.
+  /// From now on nearest() and occluded() test triangles so, with visits or without, but not with WideVisits; boxes are
+  /// in floats, or in integers if compress_nodes() is called for them.
   void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
   /// From now on hits are what the traverser of the chip makes of them. Of `hardware`: which triangle is hit, and at
-  /// which internal t, as rtl/traverser/rp_triangle_pipe.v says (TriangleTest with the plane in 32 bits); t, u, v and
-  /// normal as rtl/traverser/rp_ray_finish.v does. Of any other nothing changes.
+  /// which internal t, as in rtl/traverser/rp_triangle_pipe.v (TriangleTest with the plane in 32 bits); t, u, v and
+  /// normal as in rtl/traverser/rp_ray_finish.v. Of any other nothing changes.
   void take_hits_of(const ChipConfiguration& chip);
   /// Replaces the tree by another over the same triangles; no answer changes. For tests.
   void set_bvh(Bvh bvh);
-  /// The nodes whose boxes are tested in integers; none if they are not.
+  /// The nodes with boxes that are tested in integers; none if they are not.
   const std::vector<CompressedNode>& compressed_nodes() const { return compressed_; }
   /// Replaces them by as many others. For tests.
   void set_compressed_nodes(std::vector<CompressedNode> nodes);
@@ -119,7 +119,7 @@ class Tracer {
   bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr,
              VisitList* visits = nullptr) const;
 
-  /// The same answer; `visits`, made of traversal().wide_bvh(), is told what is visited on the fast way to it.
+  /// The same answer; `visits`, made of traversal().wide_bvh(), records what is visited on the fast way to it.
   bool trace(const Ray& ray, Intersection& intersection, WideVisits& visits) const;
 
   /// Words 0 .. 11 are the ray's, the others zero.

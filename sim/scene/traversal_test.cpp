@@ -18,7 +18,7 @@ using namespace test;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Both ways, the fast one and the chip's, must say the same.
+/// Both ways, the fast one and the chip's, must agree.
 bool nearest(const Traversal& traversal, const RayQuery& ray, Hit& hit) {
   Hit counted;
   TraversalCounts counts;
@@ -200,8 +200,8 @@ TEST(Traversal, VisitsSayWhatTheStackDoes) {
 }
 
 TEST(Traversal, AnswerDoesNotDependOnTheTreeForNeedlesSeenEdgeOn) {
-  // Long, thin triangles whose plane holds the ray but for rounding: their t is noise, and
-  // must be the same noise in every tree.
+  // Long, thin triangles in a plane that holds the ray but for rounding: their t is noise, and must be the same noise
+  // in every tree.
   for (uint32_t seed = 1; seed <= 4; ++seed) {
     std::mt19937 random(seed);
     auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };

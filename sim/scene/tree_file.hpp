@@ -22,8 +22,8 @@ struct TreeHeader {
 };
 static_assert(sizeof(TreeHeader) == 64);
 
-/// What CompressedNode is in the model, but that a leaf is named by the place of its triangles: one number says what a
-/// ray's stack must hold of a child.
+/// What CompressedNode is in the model, but that a leaf is named by the place of its triangles: a ray's stack need hold
+/// only one number of a child.
 struct TreeNode {
   BoxNode boxes;
   /// Of node n: n. Of a leaf: leaf_word(). Of none: kNoChild.
@@ -49,7 +49,7 @@ constexpr uint32_t leaf_word(uint32_t first, uint32_t count) {
 struct TreeFile {
   TreeHeader header;
   std::vector<TreeNode> nodes;          ///< numbered as those of build_bvh()
-  std::vector<TreeTriangle> triangles;  ///< leaf by leaf: where Visit::place says
+  std::vector<TreeTriangle> triangles;  ///< leaf by leaf: Visit::place is the index
 };
 
 /// The tree of build_bvh(), each node of which goes through compress(). Throws InputError if it has too many triangles

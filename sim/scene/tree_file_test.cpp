@@ -1,5 +1,5 @@
-// The tree as a file, read by what knows of it only what docs/use/tree-file.md says: places of bytes, and how a plane
-// follows from them. Walked so, it gives the hits of the engines and the visits of compressed nodes.
+// The tree as a file, read by code that knows of it only what docs/use/tree-file.md describes: places of bytes, and how
+// a plane follows from them. Walked so, it gives the hits of the engines and the visits of compressed nodes.
 #include "scene/tree_file.hpp"
 
 #include <algorithm>

@@ -28,7 +28,7 @@ inline bool take_if_nearer(const PreparedRay& ray, const TriangleBlock& block, u
   return move_into_own_box(ray, LaneCorners{block, lane}, t) && take(ray, block, lane, t, best);
 }
 
-/// Finishes a triangle whose edge functions agree in sign; true when it becomes the candidate.
+/// Finishes a triangle with edge functions that agree in sign; true when it becomes the candidate.
 inline bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, double u, double v, double w,
                    Candidate& best) {
   const double determinant = u + v + w;

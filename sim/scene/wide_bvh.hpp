@@ -1,6 +1,6 @@
 // The tree for speed alone: nodes of eight children, made of the chip's tree (bvh.hpp), and how a ray walks it. What it
-// hits is what it hits there, as traversal.hpp says: boxes are boxes of that tree, and box test and triangle test are
-// the same operations in the same order.
+// hits is what it hits there, as promised in traversal.hpp: boxes are boxes of that tree, and box test and triangle
+// test are the same operations in the same order.
 #pragma once
 
 #include <cstdint>
@@ -84,7 +84,7 @@ class WideVisits {
     visit(blocks_[number], number | kLeafBit);
   }
 
-  uint64_t nodes = 0, triangles = 0;  ///< whose boxes, and which themselves, are tested
+  uint64_t nodes = 0, triangles = 0;  ///< nodes with tested boxes, and tested triangles
   std::vector<uint32_t> places;       ///< nodes and, with kLeafBit, blocks, each when it is come to first
 
  private:
@@ -98,7 +98,7 @@ class WideVisits {
 };
 
 /// The loop around box test and triangle test, for one set of the processor's instructions. `ray` is valid and the tree
-/// not empty; `visits`, if not null, is told. False: nothing is hit. All answers are the same whichever set it is.
+/// not empty; `visits`, if not null, records them. False: nothing is hit. All answers are the same whichever set it is.
 struct Walk {
   const char* instructions;  ///< "sse", "avx2"
   bool (*nearest)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits);

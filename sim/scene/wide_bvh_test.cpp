@@ -145,7 +145,7 @@ TEST(WideBvh, EveryWalkFindsWhatEveryTriangleInTurnFinds) {
   EXPECT_GT(hits, 6000);
 }
 
-TEST(WideBvh, TellsWhatRaysVisit) {
+TEST(WideBvh, ReportsWhatRaysVisit) {
   const Scene scene = make_cornell();
   const Traversal traversal(scene);
   WideVisits visits(traversal.wide_bvh());

@@ -75,7 +75,7 @@ uint32_t go_on(const WideBvh& bvh, const WideBvhNode& node, unsigned lanes, cons
   return static_cast<uint32_t>(nearest);
 }
 
-/// `ray` is valid and the tree not empty. kAny: ends with the first hit. kVisits: `visits` is told.
+/// `ray` is valid and the tree not empty. kAny: ends with the first hit. kVisits: `visits` records them.
 template <bool kAny, bool kVisits>
 bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits) {
   Float8 padded_near[3], padded_far[3], inverse[3];

@@ -9,8 +9,8 @@ class App;
 
 namespace raypool {
 
-/// A completion script; `shell` is bash, zsh or fish. Throws InputError for any other. An option whose type name is a
-/// list such as "model|rtl" is completed with its words, every other value with file names.
+/// A completion script; `shell` is bash, zsh or fish. Throws InputError for any other. An option with a list such as
+/// "model|rtl" as type name is completed with its words, every other value with file names.
 std::string completion(const CLI::App& app, const std::string& shell);
 
 /// The man page, section 1: commands in the groups of --help, which must stand together.

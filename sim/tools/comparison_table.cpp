@@ -102,7 +102,7 @@ void area_lines(std::string& text, const Json& area) {
   for (const char* side : {"a", "b"}) {
     const Json& found = area[side];
     if (found.is_null()) {
-      line(text, "area {}    not known: make synth of its configuration tells it",
+      line(text, "area {}    not known: make synth of its configuration finds it",
            side == std::string("a") ? "A" : "B");
       continue;
     }

@@ -65,8 +65,8 @@ class Cosim {
   }
 
   /// Why the program fails, with neither coverage nor counts; empty if it does not.
-  /// `inspect`: say what was wrong inside, too.
-  /// Throws what has nothing to do with the program.
+  /// `inspect`: report what was wrong inside, too.
+  /// Throws errors that the program has not caused.
   std::string failure(const RandomProgram& program, bool inspect = false) const {
     const auto run = [&](uint64_t inspect_until) {
       Memory memory = program.memory;
@@ -133,7 +133,7 @@ std::string subject(const std::string& report) {
   return text;
 }
 
-/// Shrinks a program that fails, saves it, and throws what is to be told.
+/// Shrinks a program that fails, saves it, and throws what is to be reported.
 [[noreturn]] void report_failure(const Cosim& cosim, const CosimOptions& options, const RandomProgram& program,
                                  const std::string& report, const std::string& again, bool is_difference) {
   std::string text = report;
@@ -175,7 +175,7 @@ struct Share {
   std::unique_ptr<Cosim> cosim;
 };
 
-/// In equal parts; the first have one more where that does not come out even. Who gets none is left out.
+/// In equal parts; the first have one more where that does not come out even. Machines that get none are left out.
 std::vector<Share> share_programs(const CosimOptions& options, const std::vector<Machine>& machines) {
   std::vector<Share> shares;
   for (const Machine& machine : machines) {

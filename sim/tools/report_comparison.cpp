@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// What a report says of the run itself; all other numbers are what came of it.
+// What a report has of the run itself; all other numbers are its results.
 constexpr std::array kSetUp = {"raypool", "engine", "boundary", "hits",  "precision",   "scene",
                                "view",    "size",   "depth",    "units", "reflections", "configuration"};
 // Neither: the same things in other words, and what this computer did.
@@ -45,7 +45,7 @@ void append_leaves(const Json& json, const std::string& path, std::vector<std::p
     append_leaves(item.value(), path.empty() ? item.key() : path + "." + item.key(), leaves);
 }
 
-/// Reports of versions with fewer parameters have the defaults of those; of versions with others, what they say.
+/// Reports of versions with fewer parameters have the defaults of those; of versions with others, what they have.
 Json whole_configuration(const Json& json, const std::string& where) {
   try {
     return Json::parse(to_json(parse_configuration(to_text(json, -1), where)));

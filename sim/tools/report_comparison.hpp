@@ -13,7 +13,7 @@ struct Report {
   nlohmann::ordered_json json;
 };
 
-/// `path`: of a report, or of the folder that has one as report.json. Throws InputError when it is no report.
+/// `path`: of a report, or of the folder that has one as report.json. Throws InputError when it is not a report.
 Report load_report(const std::string& path);
 
 /// `synthesis`: reports of synthesis, and folders of folders with one; of what lies in folders only reports count, and

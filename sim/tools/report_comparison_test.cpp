@@ -71,7 +71,7 @@ std::string error_of(const std::string& path) {
   return "no error";
 }
 
-TEST(ReportComparison, SaysWhatDiffersAndWhatThatDid) {
+TEST(ReportComparison, ReportsWhatDiffersAndWhatThatDid) {
   const Folder folder;
   const Configuration other = load_configuration("8w8c", {"alus.flt.count=2", "chip.ray_pool.size=100"});
   folder.write("a/report.json", report_of(Configuration(), 1000, 0.5).dump());
@@ -97,7 +97,7 @@ TEST(ReportComparison, SaysWhatDiffersAndWhatThatDid) {
       << table;
 }
 
-TEST(ReportComparison, TellsOfFieldsThatNeitherMachineLooksAt) {
+TEST(ReportComparison, ReportsFieldsThatNeitherMachineUses) {
   const Folder folder;
   const auto compared = [&](const std::vector<std::string>& a, const std::vector<std::string>& b) {
     folder.write("a/report.json", report_of(load_configuration("8w8c", a), 1000, 0.5).dump());
@@ -201,9 +201,9 @@ struct TwoPictures {
   Folder folder;
 };
 
-TEST(ReportComparison, SaysWhyPixelsDiffer) {
+TEST(ReportComparison, ReportsWhyPixelsDiffer) {
   const TwoPictures pictures;
-  EXPECT_FALSE(pictures.compared().contains("causes")) << "nobody has left what rays come to";
+  EXPECT_FALSE(pictures.compared().contains("causes")) << "no run has left what rays come to";
   const std::string map = pictures.folder.path("map.png");
   EXPECT_THROW(pictures.compared(map), InputError);
   EXPECT_FALSE(fs::exists(map));
@@ -245,7 +245,7 @@ TEST(ReportComparison, TakesTheAreaOfTheSameVerilog) {
   EXPECT_THROW(compare_reports(a, b, {folder.path("a/report.json")}), InputError) << "no report of synthesis";
 }
 
-TEST(ReportComparison, WhatIsNoReportIsOneSentence) {
+TEST(ReportComparison, AMalformedReportIsOneSentence) {
   const Folder folder;
   EXPECT_EQ(
       error_of(folder.write("broken.json", "{\"raypool\": ")).find(folder.path("broken.json") + ": not valid JSON"),

@@ -161,7 +161,8 @@ PrintRange parse_print(const std::string& text) {
     uint32_t value = 0;
     const auto [stop, error] = std::from_chars(part.data() + (hexadecimal ? 2 : 0), end, value, hexadecimal ? 16 : 10);
     if (error != std::errc{} || stop != end)
-      throw InputError(fmt::format("--print '{}': the {} '{}' is no number of 32 bits (64, 0x40)", text, what, part));
+      throw InputError(
+          fmt::format("--print '{}': the {} '{}' is not a number of 32 bits (64, 0x40)", text, what, part));
     return value;
   };
   const PrintRange range{number(text.substr(0, colon), "address"), number(text.substr(colon + 1), "number of words")};

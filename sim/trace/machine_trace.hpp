@@ -23,8 +23,8 @@ struct Window {
   std::optional<uint32_t> pixel;
 };
 
-/// "FROM:CYCLES" or "pixel:X,Y" or "pixel:X,Y:CYCLES"; of the first either may be left out. Throws InputError that says
-/// what is wrong.
+/// "FROM:CYCLES" or "pixel:X,Y" or "pixel:X,Y:CYCLES"; of the first either may be left out. Throws InputError with the
+/// reason.
 Window parse_window(const std::string& text);
 
 /// An instruction that a warp has executed; of a triple, all three.

@@ -145,7 +145,7 @@ void TraceRecorder::watch_export(const UnitOutputs& outputs, bool ready) {
   if (!ready) return;
   uint32_t& beat = exported_[outputs.export_unit];
   if (waiting_for_pixel_ && beat == kPixelBeat && outputs.export_data[kPixelWord] == *window_.pixel) {
-    // As much as is kept before it belongs to the window.
+    // As much as is kept before it is part of the window.
     waiting_for_pixel_ = false;
     window_.from = now_ - std::min(now_, window_.cycles / kBefore);
   }

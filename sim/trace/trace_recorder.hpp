@@ -14,7 +14,7 @@
 
 namespace raypool::trace {
 
-/// The device must say when its instructions got on (engine `model`). The trace goes to `result`, which must outlive
+/// The device must report when its instructions got on (engine `model`). The trace goes to `result`, which must outlive
 /// the recorder; it is whole when the recorder is gone, and empty if the pixel's ray never left.
 class TraceRecorder : public ComputeUnit {
  public:

@@ -46,7 +46,7 @@ class Events {
   std::string text_;
 };
 
-/// A warp's instructions with what they waited for, in the kernels that they belong to.
+/// A warp's instructions with what they waited for, in their kernels.
 void add_warp(const MachineTrace& trace, const std::vector<const InstructionSpan*>& spans, Events& events) {
   for (size_t first = 0; first < spans.size();) {
     size_t last = first;

@@ -72,7 +72,7 @@ struct RefereeCommandOptions {
   std::string corpus;                ///< file; empty: cases are drawn
   std::string write;                 ///< file for the corpus, "-": standard output; empty: it is judged
   std::vector<std::string> answers;  ///< files
-  std::string on_chip;               ///< engine whose whole chip answers too; empty: none
+  std::string on_chip;               ///< engine that runs the whole chip to answer too; empty: none
   std::string config = "tiny";       ///< of that chip
   std::vector<std::string> set;
   bool smallest = false;  ///< the smallest case of each fault

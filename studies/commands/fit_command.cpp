@@ -143,7 +143,7 @@ std::string slower_text(uint64_t cycles, uint64_t base) {
   return fmt::format("{:+.2f}%", 100 * (static_cast<double>(cycles) / static_cast<double>(base) - 1));
 }
 
-/// Everything that the table and the JSON tell.
+/// Everything that the table and the JSON show.
 struct Found {
   RunRecord record;
   fit::Fit fit;

@@ -1,4 +1,4 @@
-// `raypool referee`: hard rays and triangles, what rational numbers say of them, and who says otherwise.
+// `raypool referee`: hard rays and triangles, their hits in rational numbers, and the implementations that differ.
 #include <fmt/format.h>
 
 #include <cerrno>

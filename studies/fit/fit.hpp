@@ -22,7 +22,7 @@ struct Cut {
 /// One thing that there may be less of: of the machine as it is by then, what may be tried, the least first.
 using Part = std::function<std::vector<Cut>(const Configuration&)>;
 
-/// Cycles of the frame on a machine; none if it cannot draw it. `what` says in a few words what is tried.
+/// Cycles of the frame on a machine; none if it cannot draw it. `what` is in a few words what is tried.
 using Measure = std::function<std::optional<uint64_t>(const Configuration&, const std::string& what)>;
 
 struct Change {
@@ -47,7 +47,7 @@ Fit fit(const Configuration& base, uint64_t base_cycles, const std::vector<Part>
 /// A configuration with one field changed. Throws InputError when it is none then.
 Configuration with(const Configuration& configuration, const Cut& cut);
 
-/// The text of the shortest configuration file that says it: its name, and what is not as it is without being said.
+/// The text of the shortest configuration file of it: its name, and what differs from its defaults.
 std::string shortest_file(const Configuration& configuration);
 
 }  // namespace raypool::fit

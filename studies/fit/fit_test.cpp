@@ -129,7 +129,7 @@ void expect_same_machine(const Configuration& configuration) {
   EXPECT_EQ(to_json(parse_configuration(text, "the file")), to_json(configuration)) << text;
 }
 
-TEST(ShortestFile, SaysWhatIsNotAsItIsWithoutBeingSaid) {
+TEST(ShortestFile, HasWhatDiffersFromTheDefaults) {
   Configuration configuration;
   configuration.name = "small";
   configuration.data_cache_bytes = 512;
@@ -149,7 +149,7 @@ TEST(ShortestFile, HasAListInALine) {
   expect_same_machine(configuration);
 }
 
-TEST(ShortestFile, SaysWhatOtherFieldsWouldChange) {
+TEST(ShortestFile, ShowsWhatOtherFieldsWouldChange) {
   Configuration configuration;
   configuration.name = "held";
   configuration.chip.intersection_pool_size = 1024;  // which held_limit follows, unless it is said

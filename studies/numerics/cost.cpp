@@ -25,7 +25,7 @@ std::optional<double> lane_kge(const Json& report, const std::string& lane,
                                const std::map<std::string, int>& depends_on) {
   try {
     for (const auto& [name, value] : depends_on) {
-      // As raypool says them: texts.
+      // As raypool prints them: texts.
       if (report.at("parameters").at(name) != std::to_string(value)) return std::nullopt;
     }
     return report.at("lanes").at(lane).at("kge").get<double>();

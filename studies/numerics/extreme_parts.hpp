@@ -25,7 +25,7 @@ std::vector<TriangleCorners> square(float half, float z);
 /// A closed cube from `lower` to `upper`, 12 triangles, normals inwards.
 std::vector<TriangleCorners> cube(float lower, float upper);
 
-/// A picture of 1 x 1 pixel whose eye ray is exactly this one, zeros' signs included.
+/// A picture of 1 x 1 pixel with exactly this eye ray, zeros' signs included.
 ExtremeFrame ray_frame(Scene scene, const Vec3& origin, const Vec3& direction);
 /// The eye ray of a drawing of one pixel.
 const TracedRay& eye_ray(const Drawing& drawing);
@@ -40,7 +40,7 @@ uint64_t lit_pixels(const FrameBuffer& frame);
 // Each throws ExtremeFailure.
 /// No contribution has a NaN.
 void require_no_nan(const Drawing& drawing);
-/// Every traced ray found what exact arithmetic finds, or cannot tell from it at single precision.
+/// Every traced ray found what exact arithmetic finds, or something equal to it at single precision.
 void require_right_hits(const Drawing& drawing, const Scene& scene);
 /// Nothing was hit, and the picture is black.
 void require_nothing(const Drawing& drawing);

@@ -76,7 +76,7 @@ class ExtremeMachine {
   /// The chips that it makes: as it is, and for frames that have a traverser of their own without one.
   std::vector<Configuration> chips() const;
 
-  /// Rays of engine native hit what this test says; there must be no other engine.
+  /// Rays of engine native hit by this test; there must be no other engine.
   void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
 
   const std::string& engine() const { return engine_; }

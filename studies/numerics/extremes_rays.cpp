@@ -1,4 +1,4 @@
-// Extremes of rays and boxes: each case is a picture of one pixel, whose eye ray is the hard one.
+// Extremes of rays and boxes: each case is a picture of one pixel, with the hard ray as eye ray.
 #include <fmt/format.h>
 
 #include <cmath>

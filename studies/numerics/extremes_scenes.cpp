@@ -68,7 +68,7 @@ void huge_scene(const ExtremeMachine& machine) {
   require_nothing(machine.draw(scene_frame(scene)));
 }
 
-/// Every eye ray hits the closed box, and what exact arithmetic says it hits.
+/// Every eye ray hits the closed box, and what it hits in exact arithmetic.
 void require_closed(const ExtremeMachine& machine, const Vec3d& offset) {
   const Scene scene = moved(small_cornell(), 1, offset);
   const Drawing drawing = machine.draw(scene_frame(scene, 3));

@@ -33,7 +33,7 @@ ExtremeFrame frame_of(Scene scene, int size, int depth = 2) {
   return frame;
 }
 
-/// One pixel whose eye ray hits at `t` with `normal`; its reflection hits nothing, its shadow ray is free. With
+/// One pixel with an eye ray that hits at `t` with `normal`; its reflection hits nothing, its shadow ray is free. With
 /// `light`, secondary rays start at the hit itself.
 Drawing shade_hit(const ExtremeMachine& machine, const Vec3& normal, float t, int depth, const Vec3* light = nullptr) {
   ExtremeFrame frame = ray_frame(scene_of_triangles(square(1, -2)), {0, 0, 0}, {0.25f, 0.125f, -1});
@@ -240,7 +240,7 @@ void grazing_light_and_blocks(const ExtremeMachine& machine) {
           fmt::format("{} of {} shadow rays end otherwise than the reference's", wrong, shadows));
 }
 
-/// A closed box whose walls multiply light by ten thousand at each reflection.
+/// A closed box with walls that multiply light by ten thousand at each reflection.
 Scene shining_box(float diffuse) {
   Scene scene = scene_of_triangles(cube(-2, 2));
   scene.materials[0].kd = {diffuse, diffuse, diffuse};

@@ -32,7 +32,7 @@ TEST_P(Extremes, AreTheSameOnEngineFunctional) {
   run_all({"functional", GetParam(), small_unit(), make_functional_unit});
 }
 
-/// The model of the chip around functional units, whose traverser is the model's.
+/// The model of the chip around functional units, with the model's traverser.
 std::unique_ptr<ChipDevice> chip_model(const Configuration& configuration, Memory& memory) {
   return make_chip_model(configuration, make_model(configuration, memory, 1).device);
 }
@@ -54,7 +54,7 @@ TEST(ExtremeCatalogue, NamesAreUnique) {
   EXPECT_GT(names.size(), 55u);
 }
 
-/// A unit whose results are those of another arithmetic.
+/// A unit with the results of another arithmetic.
 UnitMaker functional_in(const arith::Mode& mode) {
   return [mode](const Configuration& configuration, Memory& memory) {
     Configuration other = configuration;

@@ -167,7 +167,7 @@ std::vector<ExtremeCase> triangle_extremes() {
       make("coplanar overlaps", "the lowest index wins, in every order of the list", coplanar),
       make("NaN and infinite vertices", "refused with the vertex's number; if drawn, not there", bad_vertices),
       make("indices out of range", "refused with the index", bad_indices),
-      make("triangles below the resolution", "hit or missed as single precision can tell", tiny_triangles),
+      make("triangles below the resolution", "hit or missed as far as single precision resolves", tiny_triangles),
       make("closed mesh from inside", "no ray leaves through an edge or a corner", closed_mesh),
   };
 }

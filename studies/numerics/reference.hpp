@@ -1,8 +1,8 @@
 // What the picture ought to be: the ray tracer of the kernels in double precision, on the same inputs as the
 // machine has: float vertices, float material records, float kernel arguments. Which triangle a ray hits is
-// decided in double precision, and in 113-bit arithmetic where double cannot tell the side of an edge. Secondary
-// rays start on the surface itself, but for an offset a billion times smaller than the machine's, so no surface
-// shadows itself and no shadow is moved.
+// decided in double precision, and in 113-bit arithmetic where double does not decide the side of an edge. Secondary
+// rays start on the surface itself, but for an offset a billion times smaller than the machine's, so no surface shadows
+// itself and no shadow is moved.
 #pragma once
 
 #include <array>

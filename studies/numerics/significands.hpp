@@ -23,13 +23,13 @@ struct SignificandRow {
 };
 
 /// A row for each significand that there is, the full one first; all else of arithmetic and hits is the
-/// configuration's. `frame` says size and depth. `progress` gets the number of rows that are done. Throws InputError as
+/// configuration's. `frame` has size and depth. `progress` gets the number of rows that are done. Throws InputError as
 /// render_native() does.
 std::vector<SignificandRow> try_significands(const Scene& scene, const Configuration& configuration,
                                              NativeOptions frame,
                                              const std::function<void(size_t)>& progress = nullptr);
 
-/// The smallest one whose picture passes, as do those of all above it.
+/// The smallest one with a picture that passes, as do those of all above it.
 std::optional<uint32_t> smallest_passing(const std::vector<SignificandRow>& rows);
 
 std::string significand_table(const std::vector<SignificandRow>& rows);

@@ -54,7 +54,7 @@ RecordedFrame record_frame(const TradeScene& scene, const arith::Mode& mode,
 /// Counts of pixels, but for the decibels.
 struct Quality {
   uint64_t pixels = 0;
-  uint64_t ties = 0;  ///< primary hits and shadows that differ where single precision cannot tell; wrong nowhere below
+  uint64_t ties = 0;  ///< primary hits and shadows that differ within single precision; wrong nowhere below
   uint64_t wrong_triangles =
       0;               ///< the primary ray hits another triangle than the reference's, or one where there is none
   uint64_t holes = 0;  ///< the primary ray hits nothing where the reference hits

@@ -79,7 +79,7 @@ TEST(Trade, EngineFunctionalDrawsTheSamePicturesInEveryMode) {
   }
 }
 
-/// The quality of a machine whose kernels do something wrong.
+/// The quality of a machine with kernels that do something wrong.
 Quality with(const std::function<void(RayKernel, NativeThread&)>& spoil) {
   return judge_frame(cornell(), record_frame(cornell(), {}, [&](RayKernel which, NativeThread& thread) {
                        run_native(which, thread);

@@ -13,7 +13,7 @@ namespace raypool::numerics {
 
 struct WatertightMesh {
   std::string name;
-  Scene scene;                ///< closed, or a sheet all of whose edges but the rim are shared
+  Scene scene;                ///< closed, or a sheet with all edges but the rim shared
   std::vector<Vec3> origins;  ///< from which every point of the mesh is in sight, and rays are cast
 };
 /// Balls near and far, a ball squeezed to needles of 1000 to 1, a bumpy star-shaped body, a terrain seen from above.
@@ -23,7 +23,7 @@ std::vector<WatertightMesh> watertight_meshes();
 struct SharedEdge {
   uint32_t a, b;
 };
-/// Edges of two triangles, none of whose ends lies on a rim: a ray at the rim may pass beside the mesh.
+/// Edges of two triangles, without an end on a rim: a ray at the rim may pass beside the mesh.
 std::vector<SharedEdge> shared_edges(const Scene& scene);
 /// From an origin to a point of an edge, this share of it from a to b: next to it, as the direction is rounded.
 RayQuery ray_at(const Scene& scene, const Vec3& origin, const SharedEdge& edge, double share);

@@ -1,4 +1,4 @@
-// What a ray hits, in rational numbers: the certificate of a case. docs/use/referee.md says what is right, and why.
+// What a ray hits, in rational numbers: the certificate of a case. docs/use/referee.md defines what is right, and why.
 #pragma once
 
 #include <cstdint>

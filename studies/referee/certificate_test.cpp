@@ -1,4 +1,4 @@
-// The certificate: what is right of cases whose answer is plain, and what its numbers promise.
+// The certificate: what is right of cases with a plain answer, and what its numbers promise.
 #include "referee/certificate.hpp"
 
 #include <gtest/gtest.h>
@@ -34,13 +34,13 @@ TEST(Certificate, ARayInsideATriangleHitsItAndNoOther) {
   EXPECT_TRUE(of(down(3, 0), square()).miss);
 }
 
-TEST(Certificate, AnEdgeThatIsSharedBelongsToEitherButNotToNone) {
+TEST(Certificate, ASharedEdgeIsPartOfEitherTriangleButNotOfNone) {
   const Certificate certificate = of(down(1, 1), square());
   EXPECT_EQ(certificate.allowed, (Allowed{1, 2}));
   EXPECT_FALSE(certificate.miss);
 }
 
-TEST(Certificate, ACornerBelongsToAnyOfAClosedFan) {
+TEST(Certificate, ACornerIsPartOfAnyTriangleOfAClosedFan) {
   EXPECT_EQ(of(down(0, 0), square()).allowed, (Allowed{0, 1, 2, 3}));
   EXPECT_FALSE(of(down(0, 0), square()).miss);
   Triangles open = square();
@@ -103,7 +103,7 @@ TEST(Certificate, LimitsAreOpenAndWhatRoundsOntoThemIsEither) {
   EXPECT_TRUE(of(ray, square()).allowed.empty()) << "behind";
 }
 
-TEST(Certificate, WhatIsNoRayHitsNothing) {
+TEST(Certificate, MalformedRaysHitNothing) {
   for (const float strange : {INFINITY, -INFINITY, std::nanf("")}) {
     RayQuery ray = down(1, 0.5f);
     ray.direction.x = strange;
@@ -142,8 +142,8 @@ TEST(Certificate, IsThatOfTheSameCaseInAnotherForm) {
   }
 }
 
-/// So that the ray begins at the origin; false where a float cannot tell, or a number is so small that others beside
-/// it would not be near.
+/// So that the ray begins at the origin; false where floats do not resolve it, or a number is so small that others
+/// beside it would not be near.
 bool moves_to_origin(HitCase& hit_case) {
   bool exact = true;
   const auto check = [&](float x) { exact &= x == 0 || (std::fabs(x) > 0x1p-40f && std::fabs(x) < 0x1p40f); };
@@ -163,7 +163,7 @@ bool moves_to_origin(HitCase& hit_case) {
   return exact;
 }
 
-/// A ray beside this one, too near for any number of the case to tell, that passes through no edge, hits one of those
+/// A ray beside this one, too near to change any number of the case, that passes through no edge, hits one of those
 /// allowed, or misses if a miss is allowed.
 TEST(Certificate, AllowsWhatRaysBesideItHit) {
   std::mt19937 random(4);

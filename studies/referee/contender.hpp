@@ -1,4 +1,4 @@
-// Who answers the cases of a corpus.
+// Implementations that answer the cases of a corpus.
 #pragma once
 
 #include <memory>

@@ -30,12 +30,12 @@ void each_line(const std::string& path, const std::string& what,
   }
 }
 
-/// What a line says besides its case must be what its numbers say.
+/// What a line has besides its case must follow from its numbers.
 void check_certificate(const std::string& line, const HitCase& hit_case, const std::string& where) {
   const Json said = parse_json(line, where), ours = parse_json(to_line(hit_case, certify(hit_case)), where);
   for (const char* key : {"hits", "allowed", "miss"}) {
     if (!said.contains(key) || said[key] == ours[key]) continue;
-    throw InputError(fmt::format("{}: \"{}\" is {}, but the case's numbers say {}: correct it or leave it out", where,
+    throw InputError(fmt::format("{}: \"{}\" is {}, but the case's numbers give {}: correct it or leave it out", where,
                                  key, said[key].dump(), ours[key].dump()));
   }
 }

@@ -14,14 +14,14 @@ std::string to_line(const HitCase& hit_case, const Certificate& certificate);
 /// Throws InputError when a line is no case, or has a certificate that is not that of its numbers.
 std::vector<HitCase> read_corpus(const std::string& path);
 
-/// What somebody has said of each case, by number.
+/// An implementation's answers to the cases, by number.
 struct RecordedAnswers {
   std::string name;
   std::vector<HitAnswer> answers;
 };
 /// Of a file, with its name, one a case of `cases`. Throws InputError when a line is no answer, or a case has none.
 RecordedAnswers read_answers(const std::string& path, uint64_t cases);
-/// Says what is recorded, which must outlive it.
+/// Answers what is recorded, which must outlive it.
 std::unique_ptr<Contender> contender_of(const RecordedAnswers& recorded);
 
 }  // namespace raypool::referee

@@ -65,37 +65,38 @@ TEST_F(CorpusFile, HoldsEveryBitOfItsCases) {
 constexpr const char* kCase = R"({"case":0,"origin":["0","0","1"],"direction":["0","0","-0x1p+0"],"limit":"inf",)"
                               R"("triangles":[[["-1","-1","0"],["1","-1","0"],["0","1","0"]]])";
 
-TEST_F(CorpusFile, RefusesWhatIsNoCase) {
-  const auto says = [&](const std::string& text) {
+TEST_F(CorpusFile, RefusesMalformedCases) {
+  const auto refusal = [&](const std::string& text) {
     written(text);
     return refusal([&] { read_corpus(path_); });
   };
-  EXPECT_EQ(says(std::string(kCase) + "}\n"), "");
-  EXPECT_EQ(says("\n"), ": has no case: give a line for each");
-  EXPECT_NE(says("{\n").find(", line 1: not valid JSON"), std::string::npos);
-  EXPECT_NE(says(std::string(kCase) + "}\n{\"case\":1}\n").find(", line 2:"), std::string::npos);
-  EXPECT_NE(says(R"({"case":0,"origin":["0",0,"1"]})").find("origin[1]"), std::string::npos);
-  EXPECT_NE(says(R"({"case":0,"origin":["0","x","1"]})").find("must be a float as a text"), std::string::npos);
+  EXPECT_EQ(refusal(std::string(kCase) + "}\n"), "");
+  EXPECT_EQ(refusal("\n"), ": has no case: give a line for each");
+  EXPECT_NE(refusal("{\n").find(", line 1: not valid JSON"), std::string::npos);
+  EXPECT_NE(refusal(std::string(kCase) + "}\n{\"case\":1}\n").find(", line 2:"), std::string::npos);
+  EXPECT_NE(refusal(R"({"case":0,"origin":["0",0,"1"]})").find("origin[1]"), std::string::npos);
+  EXPECT_NE(refusal(R"({"case":0,"origin":["0","x","1"]})").find("must be a float as a text"), std::string::npos);
   std::string infinite = kCase;
   infinite.replace(infinite.find("\"-1\""), 4, "\"inf\"");
-  EXPECT_NE(says(infinite + "}").find("triangles[0][0] must be finite"), std::string::npos) << says(infinite + "}");
+  EXPECT_NE(refusal(infinite + "}").find("triangles[0][0] must be finite"), std::string::npos)
+      << refusal(infinite + "}");
 }
 
 TEST_F(CorpusFile, RefusesACertificateThatIsNotThatOfTheNumbers) {
   written(std::string(kCase) + R"(,"allowed":[],"miss":true})");
   EXPECT_EQ(refusal([&] { read_corpus(path_); }),
-            ", line 1: \"allowed\" is [], but the case's numbers say [0]: correct it or leave it out");
+            ", line 1: \"allowed\" is [], but the case's numbers give [0]: correct it or leave it out");
   written(std::string(kCase) + R"(,"allowed":[0],"miss":false})");
   EXPECT_EQ(read_corpus(path_).size(), 1u);
 }
 
 TEST_F(CorpusFile, HoldsAnAnswerACase) {
-  const auto says = [&](const std::string& text) {
+  const auto refusal = [&](const std::string& text) {
     written(text);
     return refusal([&] { read_answers(path_, 2); });
   };
   const std::string first = to_line(NumberedAnswer{0, {true, 3, 1.5f}}) + '\n', second = to_line(NumberedAnswer{1, {}});
-  EXPECT_EQ(says(first + second), "");
+  EXPECT_EQ(refusal(first + second), "");
   const RecordedAnswers recorded = read_answers(path_, 2);
   const auto answers = contender_of(recorded);
   Said said;
@@ -105,9 +106,9 @@ TEST_F(CorpusFile, HoldsAnAnswerACase) {
   hit_case.number = 1;
   answers->answer(hit_case, &said);
   EXPECT_FALSE(said->hit);
-  EXPECT_EQ(says(first), ": case 1 has no answer: each needs a line");
-  EXPECT_EQ(says(first + first + second), ", line 2: case 0 is answered twice: keep one of them");
-  EXPECT_EQ(says(first + to_line(NumberedAnswer{2, {}})), ", line 2: the corpus has no case 2, only those below 2");
+  EXPECT_EQ(refusal(first), ": case 1 has no answer: each needs a line");
+  EXPECT_EQ(refusal(first + first + second), ", line 2: case 0 is answered twice: keep one of them");
+  EXPECT_EQ(refusal(first + to_line(NumberedAnswer{2, {}})), ", line 2: the corpus has no case 2, only those below 2");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The corpus: reproducible, of the hardware's domain, and as hard as its kinds say.
+// The corpus: reproducible, of the hardware's domain, and as hard as its kinds promise.
 #include "referee/corpus.hpp"
 
 #include <gtest/gtest.h>

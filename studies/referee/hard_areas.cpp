@@ -72,7 +72,7 @@ DrawnCase at_slivers(Draw& draw) {
 }
 
 DrawnCase at_needles(Draw& draw) {
-  // A row of triangles with one far corner, whose others are a float from each other, or a few.
+  // A row of triangles with one far corner, the others a float from each other, or a few.
   const Vec3 far = draw.place(draw.one_of(2) ? 1 : 1000).as<float>();
   std::vector<Corners> triangles;
   Vec3 corner = draw.place(1).as<float>();

@@ -25,7 +25,7 @@ using Around = std::multimap<uint32_t, size_t>;
 
 struct Seams {
   numerics::WatertightMesh mesh;
-  std::vector<numerics::SharedEdge> edges;  // around whose ends there are few triangles
+  std::vector<numerics::SharedEdge> edges;  // with few triangles around their ends
   Around around;
 
   explicit Seams(numerics::WatertightMesh made) : mesh(std::move(made)), edges(numerics::shared_edges(mesh.scene)) {

@@ -1,4 +1,4 @@
-// The judge: each fault by its name, and bugs that are planted into our hits are found soon.
+// The judge: each fault by its name, and bugs that are seeded in our hits are found soon.
 #include "referee/judge.hpp"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST(Judge, MeasuresTInUnitsOfItsLastPlace) {
 
 // ---- Bugs in our hits, as a designer would make them, whatever the definition is
 
-/// A side of a triangle does not belong to it: a ray exactly on it misses.
+/// A side of a triangle is not part of it: a ray exactly on it misses.
 HitAnswer with_an_open_edge(const HitCase& hit_case) {
   HitCase left = hit_case;
   std::vector<uint32_t> numbers;
@@ -97,7 +97,7 @@ HitAnswer with_a_closed_limit(const HitCase& hit_case) {
   return hardware_answer(longer);
 }
 
-/// Two hits whose t differ in the last place are taken for a tie, which the lower number wins.
+/// Two hits with t that differ in the last place are taken for a tie, which the lower number wins.
 HitAnswer with_a_wide_tie(const HitCase& hit_case) {
   HitAnswer best;
   for (uint32_t i = 0; i < hit_case.triangles.size(); ++i) {
@@ -125,9 +125,9 @@ void expect_found(HitAnswer (*bug)(const HitCase&), size_t most_triangles) {
   EXPECT_LE(smallest.triangles.size(), most_triangles) << text_of(smallest);
 }
 
-TEST(PlantedBug, AnOpenEdgeIsFoundAmongAThousandCases) { expect_found(with_an_open_edge, 2); }
-TEST(PlantedBug, AClosedLimitIsFoundAmongAThousandCases) { expect_found(with_a_closed_limit, 1); }
-TEST(PlantedBug, AWideTieIsFoundAmongAThousandCases) { expect_found(with_a_wide_tie, 2); }
+TEST(SeededBug, AnOpenEdgeIsFoundAmongAThousandCases) { expect_found(with_an_open_edge, 2); }
+TEST(SeededBug, AClosedLimitIsFoundAmongAThousandCases) { expect_found(with_a_closed_limit, 1); }
+TEST(SeededBug, AWideTieIsFoundAmongAThousandCases) { expect_found(with_a_wide_tie, 2); }
 
 TEST(OurAnswers, AreTheSameWithBoxesOfEveryWidth) {
   const auto ours = our_answers();

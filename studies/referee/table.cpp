@@ -65,9 +65,9 @@ class Match {
  private:
   static constexpr uint64_t kAtOnce = 512;
 
-  void work(bool tells) {
+  void work(bool reports) {
     try {
-      std::vector<Tally> tallies = answer_cases(tells);
+      std::vector<Tally> tallies = answer_cases(reports);
       const std::lock_guard<std::mutex> lock(mutex_);
       tallies_.resize(tallies.size());
       for (size_t i = 0; i < tallies.size(); ++i) tallies_[i].add(std::move(tallies[i]));
@@ -77,7 +77,7 @@ class Match {
       next_ = cases_.count;
     }
   }
-  std::vector<Tally> answer_cases(bool tells) {
+  std::vector<Tally> answer_cases(bool reports) {
     const Contenders contenders = make_();
     size_t count = 0;
     for (const auto& each : contenders) count += each->names().size();
@@ -90,7 +90,8 @@ class Match {
         for (const auto& each : contenders) each->answer(hit_case, place), place += each->names().size();
         judge_all(hit_case, answers, tallies);
       }
-      if (tells && options_.progress) options_.progress(static_cast<double>(first) / static_cast<double>(cases_.count));
+      if (reports && options_.progress)
+        options_.progress(static_cast<double>(first) / static_cast<double>(cases_.count));
     }
     return tallies;
   }
@@ -123,7 +124,7 @@ void set_times(Row& row, std::vector<float>& errors) {
   row.largest = at(1);
 }
 
-/// Makes the smallest cases of the rows of a contender smaller.
+/// Reduces the smallest cases of the rows of a contender further.
 class RowShrinker {
  public:
   RowShrinker(Contender& contender, Row* rows)
@@ -217,7 +218,7 @@ std::string smallest_cases_of(const std::vector<Row>& rows) {
     for (const Fault fault : kAllFaults) {
       const Failing& failing = row.of(fault);
       if (failing.count == 0) continue;
-      const std::string shown = fmt::format("  {}\n  says {}; right is {}\n", text_of(failing.smallest),
+      const std::string shown = fmt::format(" {}\n answers {}; right is {}\n", text_of(failing.smallest),
                                             text_of(failing.answer), text_of(certify(failing.smallest)));
       if (shown == before[static_cast<size_t>(fault)]) continue;
       before[static_cast<size_t>(fault)] = shown;

@@ -1,4 +1,4 @@
-// What contenders say of a corpus, beside its certificates: a row each.
+// The contenders' answers to a corpus, beside its certificates: a row each.
 #pragma once
 
 #include <functional>

@@ -14,7 +14,7 @@ OWN = ("warps", "lanes", "units", "chip.policy", "scene", "view", "size", "engin
 
 
 def group_names(groups, *without):
-    """What tells each group from the others, without the field that varies inside."""
+    """What distinguishes each group from the others, without the field that varies inside."""
     return labels([group[0] for group in groups], *without)
 
 

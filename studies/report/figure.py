@@ -1,4 +1,4 @@
-"""What sections consist of: figures, each of one or more plots, and tables; with what the page says below them."""
+"""What sections consist of: figures, each of one or more plots, and tables; with what the page writes below them."""
 
 from .point import differing, short_field
 
@@ -20,7 +20,7 @@ class Panel:
 
 
 class Figure:
-    """`sentence` says what matters in numbers; `points` are those that are drawn."""
+    """`sentence` has what matters in numbers; `points` are those that are drawn."""
 
     def __init__(self, title, sentence, points, panels=(), tables=()):
         self.title, self.sentence, self.points = title, sentence, points
@@ -37,7 +37,7 @@ class Table:
 
 
 class Section:
-    """`figures`: the first is open, the others can be opened. Without any, `missing` says what would make one."""
+    """`figures`: the first is open, the others can be opened. Without any, `missing` explains what would make one."""
 
     def __init__(self, name, title, intro, figures, missing):
         self.name, self.title, self.intro, self.figures, self.missing = name, title, intro, figures, missing

@@ -1,4 +1,4 @@
-"""Points that belong into one figure: those that differ in the figure's own fields alone."""
+"""Points of one figure: those that differ in the figure's own fields alone."""
 
 
 def grouped(points, *fields):

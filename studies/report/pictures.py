@@ -59,7 +59,7 @@ def scene_key(point):
 
 
 def compare(a, b):
-    """What `raypool compare` says of two points' pictures."""
+    """What `raypool compare` reports of two points' pictures."""
     try:
         return json.loads(raypool.ask("compare", a.folder, b.folder, "--json"))["picture"]
     except SweepError as error:
@@ -121,7 +121,7 @@ def collect(points, notes):
 
 
 def engines_and_machines(picture):
-    """Who drew it, in words."""
+    """Which engines and machines drew it, in words."""
     engines = ", ".join(dict.fromkeys(point["engine"] for point in picture.points))
     machines = list(dict.fromkeys(point.machine for point in picture.points))
     more = f" and {len(machines) - 3} more machines" if len(machines) > 3 else ""
@@ -129,7 +129,7 @@ def engines_and_machines(picture):
 
 
 def arithmetic_label(pictures):
-    """What tells these pictures from each other, if anything chosen does."""
+    """What distinguishes these pictures from each other, if anything chosen does."""
     points = [picture.point for picture in pictures]
     names = [name for name in differing(points) if name.startswith("arithmetic.")]
     every = {name for point in points for name in point.fields}

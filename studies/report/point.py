@@ -6,9 +6,9 @@ import shlex
 from sweep.raypool import ROOT, flat
 
 TIMED = ("model", "rtl", "lockstep")
-# Of a run, beside the machine's; in this order where points are told apart.
+# Of a run, beside the machine's; in this order where points are distinguished.
 RUN_FIELDS = ("scene", "view", "size", "depth", "units", "engine")
-# What is told of an engine beside its name: boundary or hits, where they are not the default.
+# What is shown of an engine beside its name: boundary or hits, where they are not the default.
 OF_ENGINE = {"chip": " chip", "embree": " embree"}
 
 
@@ -92,7 +92,7 @@ class Point:
 
     @property
     def command(self):
-        """That makes this run again, as somebody types it in the project's folder."""
+        """That makes this run again, as you type it in the project's folder."""
         words = iter(self.report["command"][1:])
         kept = ["raypool"]
         for word in words:

@@ -98,7 +98,7 @@ def tables(pairs):
 
 
 def why(row, point):
-    """A sentence for a machine that is behind, from what its report tells."""
+    """A sentence for a machine that is behind, from its report."""
     rate = point.report["mrays_per_second_thesis"]
     words = [f"{point.shape} is behind: {number(rate)} against {number(row['mrays_per_s'])} Mrays/s. Its kernels "
              f"fill {ours(point, 'resource_util'):.1f}% of the threads there are (published: "
@@ -113,7 +113,7 @@ def why(row, point):
                        reverse=True)
         words.append("most cycles of its warps: " + ", ".join(f"{said} {percent(s)}" for s, said in parts[:WHY_PARTS]))
     else:
-        words.append("where its cycles went this report does not tell")
+        words.append("this report does not show where its cycles went")
     return "; ".join(words) + "."
 
 

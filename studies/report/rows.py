@@ -100,10 +100,10 @@ def alus_figure(points):
     busy, alu, share = extreme(points, "utilisation")
     waits, wanted, count = extreme(points, "waiting")
     sentence = (f"The busiest is {alu} of {names[id(busy)]}, at work {percent(share)} of busy time; the most waited "
-                f"for is {wanted} of {names[id(waits)]}, by {number(count)} warps in the mean.")
+                f"for is {wanted} of {names[id(waits)]}, by {number(count)} warps on average.")
     return Figure(f"ALUs: {common(points)}", sentence, points, [
         dots("Utilisation of each ALU", points, "utilisation", "% of busy time", 100),
-        dots("Waiting for each ALU", points, "waiting", "warps that wait, in the mean", 1),
+        dots("Waiting for each ALU", points, "waiting", "warps that wait, on average", 1),
     ])
 
 

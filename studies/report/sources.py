@@ -116,7 +116,7 @@ class Sources:
             self.notes.append(f"{near(path)} has no finished point: the same make sweep goes on")
 
     def checked(self, path, document):
-        """As schemas/report.json says, but for what a newer version may have added."""
+        """By schemas/report.json, but for what a newer version may have added."""
         errors = [error for error in self.validator.iter_errors(document) if error.validator != "additionalProperties"]
         if errors:
             error = min(errors, key=lambda error: (len(error.absolute_path), str(error.absolute_path)))

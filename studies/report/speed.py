@@ -56,7 +56,7 @@ def figure(points):
     sentence = (f"The fastest is {best.shape} with {number(best.rate)} Mrays/s; for each core {thrifty.shape} does "
                 f"most, {number(per_core(thrifty))} Mrays/s, where {best.shape} does {number(per_core(best))}.")
     cores = "cores (lanes of a unit)"
-    # Splits of the same contents belong together; else machines that have the other number in common.
+    # Splits of the same contents go together; else machines that have the other number in common.
     splits = len(values(points, "contents")) < min(len(values(points, field)) for field in ("warps", "lanes"))
     lines = ("contents", "contents") if splits else ("warps", "lanes")
     return Figure(f"Speed: {common(points)}", sentence, points, [

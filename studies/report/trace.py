@@ -1,4 +1,4 @@
-"""The machine at work: what runs with a trace (make sim TRACE=1) did, made small for the page's drawing."""
+"""The machine at work: what runs with a trace (make sim TRACE=1) did, reduced for the page's drawing."""
 import json
 import os
 
@@ -15,7 +15,7 @@ class Broken(Exception):
 
 
 class Trace:
-    """`data` is what the drawing gets, as JSON text: trace.js says how it is laid out."""
+    """`data` is what the drawing gets, as JSON text: trace.js describes how it is laid out."""
 
     def __init__(self, point, path):
         self.point = point

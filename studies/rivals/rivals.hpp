@@ -1,4 +1,4 @@
-// Other ways to intersect, in floats, each as its paper says, and Embree. Only the match uses them: no engine does.
+// Other ways to intersect, in floats, each as in its paper, and Embree. Only the match uses them: no engine does.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Other ways to intersect: of plain rays all say the same, and the match shows what each gets wrong.
+// Other ways to intersect: for plain rays all agree, and the match shows what each gets wrong.
 #include "rivals/rivals.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(Rivals, OfPlainRaysAllAreRight) {
   EXPECT_GT(misses, 300);
 }
 
-TEST(Rivals, OfHardRaysEachIsWrongAndTheSmallestCaseSaysWhere) {
+TEST(Rivals, OfHardRaysEachIsWrongAndTheSmallestCaseShowsWhere) {
   const CaseSource cases{1800, [](uint64_t number) { return hard_case(1, number); }};
   RefereeOptions options;
   options.threads = 2;

@@ -11,7 +11,7 @@ namespace {
 // Of each coefficient but the constant: as if there were one more block, of variance 1, in which it is 0. So a fit
 // exists whatever is known, of more things than blocks too.
 constexpr double kRidge = 1;
-// What is known first is used, as far as there are enough blocks: a fit of fewer says more of them than of others.
+// What is known first is used, as far as there are enough blocks: a fit of fewer depends more on them than on others.
 constexpr size_t kBlocksACoefficient = 4;
 
 using Vector = std::vector<double>;
@@ -53,7 +53,7 @@ void Estimate::standardise() {
       for (size_t i = 0; i < mean.size(); ++i) deviation[i] += std::pow(known[i] - mean[i], 2) / all;
   for (Drawn& stratum : strata_) {
     for (Known& known : stratum.known) {
-      // What all blocks have the same of says nothing.
+      // What is equal in all blocks predicts nothing.
       known.resize(mean.size());
       for (size_t i = 0; i < mean.size(); ++i)
         known[i] = deviation[i] == 0 ? 0 : (known[i] - mean[i]) / std::sqrt(deviation[i]);
@@ -63,7 +63,7 @@ void Estimate::standardise() {
 }
 
 // Each block drawn stands for as many as its stratum has to one drawn, in the fit too. The estimate is linear in the
-// costs: weights say all.
+// costs: weights determine it.
 void Estimate::fit() {
   double all = 0, drawn = 0;
   for (const Drawn& stratum : strata_) {
@@ -73,7 +73,8 @@ void Estimate::fit() {
   if (strata_.empty()) return;
   const auto size = vector(strata_.front().known.front()).size();
   Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(size, size);
-  Eigen::VectorXd missing = Eigen::VectorXd::Zero(size);  // in the sum over all blocks, of what the sample says it is
+  Eigen::VectorXd missing =
+      Eigen::VectorXd::Zero(size);  // in the sum over all blocks, from the sample's estimate of it
   const auto stands_for = [](const Drawn& stratum) {
     return static_cast<double>(stratum.known.size()) / static_cast<double>(stratum.costs.size());
   };

@@ -1,4 +1,4 @@
-// What a sample says of the whole: estimates with 95% confidence intervals.
+// Estimates of the whole from a sample, with 95% confidence intervals.
 //
 // The sample is a stratified random one without replacement (Cochran, Sampling Techniques, 3rd edition, chapters 5 and
 // 6). Where something is known of every block, drawn or not, that predicts what it costs, the estimate is the

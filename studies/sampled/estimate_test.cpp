@@ -92,7 +92,7 @@ TEST(Estimate, IsTheRegressionEstimator) {
   EXPECT_NEAR(estimate.total(0).high - estimate.total(0).value, student_t(degrees) * std::sqrt(all), 1e-9);
 }
 
-TEST(Estimate, WhereWhatIsKnownSaysAllOnlyTheRidgeIsLeft) {
+TEST(Estimate, WhereWhatIsKnownPredictsAllOnlyTheRidgeIsLeft) {
   std::vector<Drawn> strata(8);
   double truth = 0;
   for (size_t i = 0; i < 800; ++i) {
@@ -142,8 +142,9 @@ Found sampled(const Population& population, uint32_t strata, uint32_t blocks) {
   return found;
 }
 
-/// So many numbers are known of each of 200 blocks, costs are what they say and so much noise; with a dear tenth.
-Population population(uint32_t known, double says, double noise) {
+/// So many numbers are known of each of 200 blocks, costs follow them, by `slope`, with so much noise; with a dear
+/// tenth.
+Population population(uint32_t known, double slope, double noise) {
   std::mt19937 random(5);
   const auto number = [&] { return static_cast<double>(random() % 10000) / 5000 - 1; };
   Population made;
@@ -153,7 +154,7 @@ Population population(uint32_t known, double says, double noise) {
     double cost = size * 10;
     for (uint32_t k = 0; k < known; ++k) {
       here.push_back(size * (5 + number()));
-      cost += says * here.back() / known;
+      cost += slope * here.back() / known;
     }
     made.known.push_back(here);
     made.costs.push_back(cost + noise * size * number());
@@ -167,7 +168,7 @@ void is_honest(const Found& found) {
   EXPECT_LT(std::fabs(found.error), 0.15 * found.half_width);
 }
 
-// Half of the variance would be noticed, and so would twice as much.
+// Half of the variance would be detected, and so would twice as much.
 TEST(Estimate, ContainsTheTruthInTheStatedShareOfSamples) {
   Population here = population(1, 0, 1);
   for (size_t i = 0; i < here.known.size(); ++i) here.known[i] = {};

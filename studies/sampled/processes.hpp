@@ -11,7 +11,7 @@ namespace raypool::sampled {
 
 /// work(0) .. work(tasks - 1), each in a forked process of its own that has all this one has and changes nothing of it;
 /// so many at a time, begun in this order. Returns what each returned. `done` is called with a task's number and what
-/// it returned as soon as it has; may be empty. No thread of this process may hold what the work needs, a lock say.
+/// it returned as soon as it has; may be empty. No thread of this process may hold what the work needs, such as a lock.
 /// Throws InputError with the message of an InputError in `work`, std::runtime_error with that of another exception or
 /// with how a process ended otherwise; all others are ended then.
 std::vector<std::string> in_processes(size_t tasks, uint32_t at_a_time, const std::function<std::string(size_t)>& work,

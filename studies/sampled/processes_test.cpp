@@ -62,7 +62,7 @@ TEST(InProcesses, PassesErrorsOn) {
             "task 2 has failed");
 }
 
-TEST(InProcesses, SaysHowAProcessEnded) {
+TEST(InProcesses, ReportsHowAProcessEnded) {
   EXPECT_EQ(error_of<std::runtime_error>([](size_t task) -> std::string {
               if (task == 0) raise(SIGKILL);
               return "";

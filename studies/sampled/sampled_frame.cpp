@@ -57,7 +57,7 @@ uint32_t tiles_under_way(const Configuration& configuration) {
   return std::max(kLeastBlockTiles, held / std::min(configuration.contents(), held));
 }
 
-/// Of a picture of so many tiles. The larger a block, the less of its cost is its neighbours', of whom caches need
+/// Of a picture of so many tiles. The larger a block, the less of its cost is its neighbours', of which caches need
 /// more.
 uint32_t block_tiles(const Configuration& configuration, uint64_t tiles) {
   const uint32_t under_way = tiles_under_way(configuration);
@@ -149,7 +149,7 @@ class SampledFrame {
     for (std::vector<uint32_t> more = pilot; !more.empty();) {
       simulate(sample, more);
       const double seconds = seconds_since(begin), a_tile = seconds / figures_.simulated_tiles;
-      // What a small sample says of the size of a much larger one is worth little.
+      // What a small sample predicts of the size of a much larger one is worth little.
       const double blocks = std::min(blocks_wanted(sample, seconds, a_tile), kGrowth * sample.drawn());
       // What is beside the blocks costs too.
       const bool all = blocks * with_beside() / block_ >= kWholeFrom * sample.inner_blocks();

@@ -1,4 +1,4 @@
-// Engine `sampled`: the cycle-exact model on a random sample of a frame's tiles, and what that says of the frame.
+// Engine `sampled`: the cycle-exact model on a random sample of a frame's tiles, and what follows for the frame.
 //
 // A block of the sample is simulated as it is in the frame, among its neighbours: tiles before it, that fill the chip
 // and its caches, and behind it, so that it does not drain, are simulated too and not counted. What the native renderer
@@ -16,10 +16,10 @@ namespace raypool::sampled {
 std::vector<std::vector<PixelTile>> blocks_of(const Configuration& configuration, uint32_t width, uint32_t height);
 
 /// `work`: what each of blocks_of() takes, of the frame and its memory image. A pilot sample finds how many tiles it
-/// takes; if that is three quarters of the frame all of it is simulated. Options of `chip` as for run_board(), whose
-/// exceptions it passes on, as in_processes() does; it makes the model of the chip itself, of so many units. The sample
-/// is simulated in processes of their own: `chip.frame` gets nothing of it, and `chip.progress` is called when one has
-/// ended, with its stage's share, cycles and rays.
+/// takes; if that is three quarters of the frame all of it is simulated. Options of `chip` as for run_board(); it
+/// passes on its exceptions, as in_processes() does; it makes the model of the chip itself, of so many units. The
+/// sample is simulated in processes of their own: `chip.frame` gets nothing of it, and `chip.progress` is called when
+/// one has ended, with its stage's share, cycles and rays.
 Figures draw_sampled(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work,
                      const Wanted& wanted);
 

@@ -62,7 +62,7 @@ struct Frame : test::RealFrame {
   std::vector<NativeWork> work;
 };
 
-TEST(SampledFrame, SaysWhatTheWholeFrameTakes) {
+TEST(SampledFrame, PredictsWhatTheWholeFrameTakes) {
   Frame frame;
   const ChipResult whole = frame.draw();
   Wanted wanted;
@@ -159,7 +159,7 @@ TEST(SampledFrame, IsNarrowerForWhatNativeKnows) {
   EXPECT_LT(known, 0.6 * unknown);
 }
 
-TEST(SampledFrame, TellsHowFarItIs) {
+TEST(SampledFrame, ReportsItsProgress) {
   Frame frame;
   std::vector<ChipProgress> told;
   frame.options.progress = [&](const ChipProgress& done) { told.push_back(done); };

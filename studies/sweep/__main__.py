@@ -26,9 +26,9 @@ def parser():
         description="Runs every point of an experiment (docs/use/sweeps.md) that is not finished yet, and "
         "writes table.csv and table.json of all that are.",
         epilog=EXIT_CODES, formatter_class=argparse.RawDescriptionHelpFormatter)  # fmt: skip
-    options.add_argument("experiment", help="JSON file, as schemas/experiment.json says")
+    options.add_argument("experiment", help="JSON file, as in schemas/experiment.json")
     options.add_argument("--out", help="folder of points and tables (default: build/sweeps/ and the experiment's name)")
-    options.add_argument("--where", choices=("here", "slurm"), default="here", help="who runs points (default: here)")
+    options.add_argument("--where", choices=("here", "slurm"), default="here", help="where points run (default: here)")
     options.add_argument("--jobs", help=f"points at a time (default: a core each; slurm: {SLURM_JOBS})")
     options.add_argument("--check", action="store_true", help="check all of it, list the points, and run nothing")
     return options

@@ -91,7 +91,7 @@ class Experiment:
         return point
 
     def shown(self, point):
-        """'depth=3, warps=4': what tells a point from the others."""
+        """'depth=3, warps=4': what distinguishes a point from the others."""
         shown = (f"{field}={short(point[field])}" for field in self.swept if field in point)
         return ", ".join(shown) or "the only one"
 

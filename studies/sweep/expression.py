@@ -128,5 +128,5 @@ class Filter:
     def number(self, node, values):
         value = self.value(node, values)
         if not is_number(value):
-            raise TypeError(f"'{ast.unparse(node)}' is {value!r}, which is no number")
+            raise TypeError(f"'{ast.unparse(node)}' is {value!r}, which is not a number")
         return value

@@ -232,7 +232,7 @@ class Plan:
             "program": self.program,
             "versions": self.versions,
             "machine": planned.machine,
-            # A file counts with its name, which the report tells, and its content, not with its folder.
+            # A file counts with its name, which the report has, and its content, not with its folder.
             "fields": {field: os.path.basename(text(point[field])) for field in RUN_FIELDS},
             "files": [[os.path.basename(path), self.digest(path)] for path in files],
         }

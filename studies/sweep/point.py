@@ -1,7 +1,7 @@
 """Runs one point of a sweep: python3 -m sweep.point FOLDER KEY. Snakemake calls it, here or on a node of a cluster.
 
 A point that is finished is left alone, one that is being run elsewhere is waited for, and one that fails leaves its
-sentence; all else is repeated by whoever calls again."""
+sentence; all else is repeated by the next call."""
 import ctypes
 import json
 import os
@@ -17,7 +17,7 @@ from .store import Store, write_json, write_whole
 # Of prctl(2): a signal for the child when its parent is gone, so that nothing goes on in a folder without its lock.
 PR_SET_PDEATHSIG = 1
 LIBC = ctypes.CDLL(None)
-# Somebody has stopped the sweep, or the node: no failure of the point.
+# The sweep, or the node, was stopped: no failure of the point.
 STOPPED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 

@@ -1,4 +1,4 @@
-"""Says how far a sweep is, as raypool does: on a terminal one line that is rewritten, else a line every few seconds."""
+"""Shows how far a sweep is, like raypool: on a terminal one line that is rewritten, else a line every few seconds."""
 import sys
 import time
 

@@ -50,7 +50,7 @@ def machine_words(config, settings):
 
 
 def ask_config(config, settings, *options):
-    """What raypool config, which takes the name as its argument, says of a machine that can be."""
+    """What raypool config, which takes the name as its argument, prints of a machine that can be."""
     _, *words = machine_words(config, settings)
     return ask("config", config, *words, *options)
 

@@ -81,7 +81,7 @@ def copy(path, to, opened):
 def named_by(scene, folder):
     """The files of a folder, or below it, that a scene's file may mean: materials of an OBJ, buffers of a glTF. It may
     be more than raypool reads: a result only depends on those too, then."""
-    # Line continuations, whose ends may be those of Windows; utf-8-sig leaves out a byte order mark.
+    # Line continuations, with line ends that may be those of Windows; utf-8-sig leaves out a byte order mark.
     with open(scene, encoding="utf-8-sig", errors="surrogateescape") as file:
         if scene.lower().endswith(".obj"):
             libraries = re.findall(r"^\ufeff*[ \t]*mtllib[ \t]+(.*)", re.sub(r"\\[ \t]*\n", " ", file.read()), re.M)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What has become of a Slurm job, for Snakemake: slurm_status.py JOB prints running, success or failed. Asks the
-controller, since small clusters keep no accounts; one that cannot be reached says nothing about the job."""
+controller, since small clusters keep no accounts; one that cannot be reached reveals nothing about the job."""
 import re
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""What a sweep's folder holds, and who may write in it.
+"""What a sweep's folder holds, and which processes may write in it.
 
 points/KEY/    report.json, image.png, point.json, log.txt of a finished point; comes there as a whole, by renaming
 failed/KEY/    log.txt and error.txt of a point that failed when it was last tried
@@ -40,7 +40,7 @@ class Store:
 
     @contextlib.contextmanager
     def locked(self, name, wait=True):
-        """Until the end of the block nobody else has this lock; the system takes it back from one that is killed."""
+        """Until the end of the block no other process has this lock; the system takes it back when one is killed."""
         with open(self.path(".work/locks", name), "a", encoding="utf-8") as file:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))

@@ -1,5 +1,5 @@
-"""The tables of a sweep: a row for each finished point, in the order of the experiment. They do not tell where, when or
-in which order points ran, so that they are the same byte for byte wherever they did; times.csv has that."""
+"""The tables of a sweep: a row for each finished point, in the order of the experiment. They do not show where, when
+or in which order points ran, so that they are the same byte for byte wherever they did; times.csv has that."""
 import csv
 import io
 import json
@@ -9,7 +9,7 @@ from .experiment import short
 from .raypool import flat
 from .store import write_json, write_whole
 
-# Of a report: what the point's fields say already, and what depends on the computer.
+# Of a report: what the point's fields have already, and what depends on the computer.
 SET_UP = (
     "raypool", "command", "config", "configuration", "engine", "scene", "view", "size", "depth", "units", "traverser",
     "boundary", "hits",

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The tables of docs/studies/experiments.md say what the sweep's table says, and report what is not there."""
+"""The tables of docs/studies/experiments.md show what the sweep's table has, and report what is not there."""
 import itertools
 import json
 import pathlib

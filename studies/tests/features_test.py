@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The tables of docs/studies/best.md: what they say is what the sweep's table says, and what is not there is told."""
+"""The tables of docs/studies/best.md: they show what the sweep's table has, and what is not there is reported."""
 import json
 import pathlib
 import subprocess
@@ -71,7 +71,7 @@ class Features(unittest.TestCase):
     def test_what_is_no_such_table_is_told_in_a_sentence(self):
         self.assertIn("has no areas", self.call("area", ROWS[:1], code=1))
         self.assertIn("not the table of a whole sweep", self.call("alone", ROWS[:3], code=1))
-        self.assertIn("say alone TABLE.json", self.call("nothing", ROWS, code=1))
+        self.assertIn("give alone TABLE.json", self.call("nothing", ROWS, code=1))
 
     def test_the_way_ends_at_best(self):
         """The last point of way.json has what configs/best.json has, but for the traverser that is not used there."""

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """make fidelity on a tiny frame: studies/tests/fidelity_test.py RAYPOOL. Needs the Verilated unit of 4w4c beside it.
 
-Table, fidelity.json and fidelity.svg say what the reports say; a model that is not exactly the hardware is noticed;
+Table, fidelity.json and fidelity.svg show what the reports have; a model that is not exactly the hardware is detected;
 input that cannot be used gets a sentence; and earlier results stay whole whatever happens.
 """
 import contextlib
@@ -151,7 +151,7 @@ class Runs(Case):
 
 
 class Differences(Case):
-    def noticed(self, change, sentence, *words):
+    def detected(self, change, sentence, *words):
         """The frame of before stays, and what differs is kept beside it."""
         self.run_it("--levels", "native,model")
         before = self.contents()
@@ -168,8 +168,8 @@ class Differences(Case):
         return str(folder / "image.png")
 
     def test_a_cycle(self):
-        self.noticed("if engine == 'model': report['cycles'] += 1",
-                     r"rtl and model differ: cycles \d+ and \d+; raypool compare")
+        self.detected("if engine == 'model': report['cycles'] += 1",
+                      r"rtl and model differ: cycles \d+ and \d+; raypool compare")
         kept = [self.read(f"different/{name}/report.json")["cycles"] for name in ("rtl", "model")]
         self.assertEqual(kept[0] + 1, kept[1])
         self.raypool = RAYPOOL
@@ -177,12 +177,12 @@ class Differences(Case):
         self.assertFalse((self.out / "different").exists())
 
     def test_a_counter(self):
-        self.noticed("report['warp_cycles']['waiting']['flt'] += engine == 'rtl'",
-                     r"differ: warp_cycles\.waiting\.flt \d+ and \d+;", "--levels", "model,rtl")  # fmt: skip
+        self.detected("report['warp_cycles']['waiting']['flt'] += engine == 'rtl'",
+                      r"differ: warp_cycles\.waiting\.flt \d+ and \d+;", "--levels", "model,rtl")  # fmt: skip
 
     def test_the_picture(self):
         change = f"if engine == 'model': shutil.copy({self.other_picture()!r}, out / 'image.png')"
-        self.noticed(change, r"differ: \d+ of 192 pixels;", "--levels", "model,rtl")
+        self.detected(change, r"differ: \d+ of 192 pixels;", "--levels", "model,rtl")
 
     def test_a_level_that_does_not_claim_to_be_exact_may_differ(self):
         self.stand_in(f"if engine == 'native': shutil.copy({self.other_picture()!r}, out / 'image.png')")
@@ -190,13 +190,13 @@ class Differences(Case):
         self.assertRegex(done.stdout, r"native .* \d+ pixels differ, by \d+ at most\n")
 
     def test_a_second_run_that_is_another(self):
-        self.noticed(f"if {str(self.folder)!r} in str(out) and (out.parent / 'again').exists(): report['rays'] += 1\n"
-                     "(out.parent / 'again').touch()",
-                     r"native: run 2 is not as run 1 was: rays", "--levels", "native", "--runs", "2")  # fmt: skip
+        self.detected(f"if {str(self.folder)!r} in str(out) and (out.parent / 'again').exists(): report['rays'] += 1\n"
+                      "(out.parent / 'again').touch()",
+                      r"native: run 2 is not as run 1 was: rays", "--levels", "native", "--runs", "2")  # fmt: skip
 
 
 class Errors(unittest.TestCase):
-    """Of a level that is not exact, which has errors: they are those against the hardware, wherever they are told."""
+    """Of a level that is not exact, which has errors: they are those against the hardware, wherever they are shown."""
 
     def run_of(self, level, cycles, flt):
         run = fidelity.Run(level)

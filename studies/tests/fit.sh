@@ -20,13 +20,13 @@ fits() {
     --config "$machine" --engine model --out "$folder/$scene"
   "$raypool" sim "${frame[@]}" --config 2w2c --engine native --out "$folder/$scene-native"
   expect "$what: the same picture" 0 "" cmp "$folder/$scene/image.png" "$folder/$scene-native/image.png"
-  expect "$what: the cycles are those that fit has told" 0 "" python3 - "$folder/$scene-found.json" \
+  expect "$what: the cycles are those that fit has printed" 0 "" python3 - "$folder/$scene-found.json" \
     "$folder/$scene/report.json" <<'CHECK'
 import json, sys
 found, report = (json.load(open(path)) for path in sys.argv[1:])
 assert found["changes"] and found["cycles"]["fitted"] <= found["cycles"]["most"], found["cycles"]
 assert report["cycles"] == found["cycles"]["fitted"], (report["cycles"], found["cycles"])
-assert report["configuration"] == found["fitted"], "the file says another machine"
+assert report["configuration"] == found["fitted"], "the file has another machine"
 CHECK
   expect "$what: fitted again it loses nothing more" 0 "nothing: the frame needs all of it" "$raypool" fit \
     "${frame[@]}" --config "$machine" --slower 0 --out "$folder/again.json"
@@ -101,7 +101,7 @@ CHECK
 awk '/^v / { $2 = $2 "e-25"; $3 = $3 "e-25"; $4 = $4 "e-25" } { print }' "$folder/mirror.obj" > "$folder/tiny.obj"
 echo '{"eye": [2.75e-25, 2.75e-25, 1e-24], "direction": [0, 0, -1],
   "light": {"position": [2.9e-25, 5e-25, 6.2e-25], "color": [1, 1, 1]}}' > "$folder/tiny-view.json"
-expect "an infinity is told with kernel and instruction" 0 ": frsqrt r3, r3 " \
+expect "an infinity is reported with kernel and instruction" 0 ": frsqrt r3, r3 " \
   "$raypool" fit "$folder/tiny.obj" --view "$folder/tiny-view.json" --config 2w2c --size 8x8 --quiet \
   --out "$folder/tiny.json"
 

@@ -56,7 +56,7 @@ class Numerics(unittest.TestCase):
         self.assertEqual(panel, {CYCLES: [(30, 100, mode) for mode in MODES]})
         marks = [numerics_plots.mark_of(mode) for mode in MODES]
         looks = {(mark["marker"], mark["color"], mark["markersize"], mark["markerfacecolor"]) for mark in marks}
-        self.assertEqual(len(looks), len(MODES), "each can be told from the others")
+        self.assertEqual(len(looks), len(MODES), "each differs from the others")
 
 
 if __name__ == "__main__":

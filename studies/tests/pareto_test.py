@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """make pareto: studies/tests/pareto_test.py RAYPOOL. Pictures of a tiny frame; areas are those that the tests name.
 
-The front is what nothing beats; table, pareto.json and pareto.svg say the same; no two names of the plot lie on each
-other; the pictures are those of the arithmetic that a name means; what cannot be used gets a sentence.
+The front is what nothing beats; table, pareto.json and pareto.svg agree; no two names of the plot lie on each other;
+the pictures are those of the arithmetic that a name means; what cannot be used gets a sentence.
 """
 import contextlib
 import io
@@ -49,7 +49,7 @@ class Fronts(unittest.TestCase):
 
 
 class Results(unittest.TestCase):
-    """Of machines whose areas and pictures are known."""
+    """Of machines with known areas and pictures."""
 
     def found(self, *machines):
         """(name, logic kGE, share of pixels that are off)"""
@@ -152,7 +152,7 @@ class Runs(unittest.TestCase):
         self.assertLess(rows["24-fit"]["configuration"]["intersection_words"], 21)
         self.assertRegex(done.stdout, r"\n24 +\d\.\d{3}% +[1-9]\d* +\d+ +\d+\.\d\n")
         self.assertEqual(sorted(os.listdir(self.out)), ["machines", "pareto.json"])
-        # The picture is that of raypool sim, and so is what is told of it.
+        # The picture is that of raypool sim, and so is what is reported of it.
         subprocess.run([RAYPOOL, "sim", *FRAME, "--set", "arithmetic.significand=11", "--engine", "native", "--quiet",
                         "--out", self.folder / "sim"], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
         picture = (self.out / "machines/11.png").read_bytes()

@@ -26,7 +26,7 @@ def run(*words):
 
 
 def exact(texts):
-    """None where one is no number."""
+    """None where one is not a number."""
     values = [float.fromhex(text) for text in texts]
     finite = all(abs(value) < float("inf") for value in values)
     return [fractions.Fraction(value) for value in values] if finite else None
@@ -59,7 +59,7 @@ def below(t, limit):
 
 
 def check_certificate(case):
-    """What a certificate says of each triangle, by Python's own rational numbers; True if the case has a hit."""
+    """What a certificate has of each triangle, by Python's own rational numbers; True if the case has a hit."""
     origin, direction, limit = exact(case["origin"]), exact(case["direction"]), float.fromhex(case["limit"])
     said = {hit["triangle"]: hit for hit in case["hits"]}
     is_ray = origin and direction and any(direction) and limit > 0
@@ -119,7 +119,7 @@ def check_example(raypool, corpus, name, command):
     said = re.fullmatch(rf"{CASES} cases: (\d+) false, (\d+) lost, (\d+) wrong\n", run(*command, corpus, answers))
     counts = tuple(map(int, said.groups()))
     table = run(raypool, "referee", "--corpus", corpus, "--answers", answers, "--quiet")
-    assert row_of(table, name) == counts, f"{name}: {counts}, but the table says\n{table}"
+    assert row_of(table, name) == counts, f"{name}: {counts}, but the table shows\n{table}"
     assert 0 < sum(counts) < CASES // 4, counts
     print(f"{name}: {counts[0]} false, {counts[1]} lost, {counts[2]} wrong, as in the table")
     return counts

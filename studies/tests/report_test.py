@@ -52,7 +52,7 @@ def environment():
 
 
 class Reader(html.parser.HTMLParser):
-    """Ids, links and texts of a page whose elements are closed in their order."""
+    """Ids, links and texts of a page with elements that are closed in their order."""
 
     def __init__(self, text):
         super().__init__()
@@ -200,7 +200,7 @@ class Page(ReportTest):
         figures = re.findall(r'<figure id="figure-\d+">.*?</figure>', page, re.S)
         self.assertGreater(len(figures), 6)
         for figure in figures:
-            self.assertRegex(figure, r'<p class="says">[^<]*\d')
+            self.assertRegex(figure, r'<p class="finding">[^<]*\d')
             self.assertRegex(figure, r"<code>make sweep EXPERIMENT=\S+\.json</code>")
             self.assertRegex(figure, r"raypool \d+\.\d+\.\d+")
             self.assertRegex(figure, r'href="#machine-\d+"')
@@ -338,7 +338,7 @@ class Refusals(ReportTest):
 
 
 class Figures(ReportTest):
-    """What single figures say."""
+    """What single figures show."""
 
     def test_published_tables(self):
         with open(ROOT / "configs/experiments/published.csv", encoding="utf-8") as file:
@@ -588,7 +588,7 @@ class Browser(ReportTest):
             server.shutdown()
         self.assertEqual(urls, {f"{place}/picture.png", f"{place}/data"})
 
-    def test_it_fits_and_asks_nobody(self):
+    def test_it_fits_and_asks_no_network(self):
         text = self.page()
         path = self.folder / "index.html"
         path.write_text(text.replace("<style>", MEASURE + "<style>", 1))

@@ -2,7 +2,7 @@
 """Sweeps through Slurm: studies/tests/sweep_slurm_test.py RAYPOOL
 
 Starts a cluster of two nodes on this machine, with a controller, daemons and keys of its own in a folder of its own.
-Says so and does nothing where that is not possible."""
+Reports it and does nothing where that is not possible."""
 import contextlib
 import os
 import pathlib

@@ -31,7 +31,7 @@ case "$1 $* " in
   "sim "*--modules*) ;;
   "sim "*--depth=13*) [ -e {folder}/works ] || {{ echo 'raypool: depth 13 brings bad luck' >&2; exit 3; }} ;;
   "sim "*--depth=7*)
-    # Half-written until somebody kills it.
+    # Half-written until it is killed.
     if [ -e {folder}/hang ]; then
       {raypool} "$@"; truncate -s 100 "$out/report.json"
       echo "$SLURMD_NODENAME $SLURM_JOB_ID" > {folder}/hang; mv {folder}/hang {folder}/hangs
@@ -220,7 +220,7 @@ class Refusals(SweepTest):
             ("warps", "neither true nor false"),
             ("warps / (lanes - 1) > 1", "division by zero"),
             ("config < 4", "not supported"),
-            ("'a' * 1000000 == 'b'", "no number"),
+            ("'a' * 1000000 == 'b'", "not a number"),
             ("contents > 5", "leaves out all"),
         ):
             with self.subTest(filter=text):

@@ -25,7 +25,7 @@ constexpr int kSoupTriangles = 60, kSoupRays = 4000;
 /// A unit in the last place of a float of this size.
 double unit_of(double t) { return std::ldexp(1.0, std::max(std::ilogb(t), -126) - 23); }
 
-/// Rays with what the engines' test and exact arithmetic say of them.
+/// Rays with the results of the engines' test and of exact arithmetic.
 class JudgedRays {
  public:
   JudgedRays(const Scene& scene, const std::vector<BenchRays>& rays) : scene_(scene), rays_(rays), engines_(scene) {
@@ -35,7 +35,7 @@ class JudgedRays {
         expected.hit = kind.any ? engines_.occluded(ray) : engines_.nearest(ray, expected.found);
         if (expected.hit && !kind.any) {
           const ExactHit exact = exact_hit(scene_, expected.found.triangle, ray);
-          // Nobody can say where a ray meets a triangle that it sees edge-on.
+          // Where a ray meets a triangle that it sees edge-on is not defined.
           if (exact.passage != Passage::Parallel && exact.t > 0) expected.t = exact.t;
         }
         expected_.push_back(expected);
@@ -212,10 +212,10 @@ const char* name_of(TriangleTime time) {
 }  // namespace
 
 TriangleWidths try_triangle_widths(const Scene& scene, const TriangleWidthOptions& options) {
-  const auto say = [&](const std::string& what) {
+  const auto progress = [&](const std::string& what) {
     if (options.progress) options.progress(what);
   };
-  say("rays of the frame");
+  progress("rays of the frame");
   const MemoryImage image = build_memory(ray_kernel_program(), scene);
   Tracer tracer(scene, image.material_base);
   const JudgedRays rays(scene, rays_of_frame(scene, tracer, options.width, options.height, options.depth));
@@ -232,7 +232,7 @@ TriangleWidths try_triangle_widths(const Scene& scene, const TriangleWidthOption
   result.large = kLarge;
   result.cases = extreme_cases().size();
   const auto add_row = [&](TriangleTime time, uint32_t bits, const TriangleTest* test) {
-    say(bits == 0 ? "the engines' test" : fmt::format("{}, {} bits", name_of(time), bits));
+    progress(bits == 0 ? "the engines' test" : fmt::format("{}, {} bits", name_of(time), bits));
     TriangleWidthRow row;
     row.time = time;
     row.bits = bits;

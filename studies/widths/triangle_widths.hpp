@@ -18,8 +18,8 @@ namespace raypool::numerics {
 struct TriangleAnswers {
   uint64_t rays = 0;
   uint64_t other = 0;    ///< another triangle, or hit instead of miss, or the other way round
-  uint64_t wrong = 0;    ///< of these: exact arithmetic says that it is not a tie, and the engines' answer is right
-  uint64_t right = 0;    ///< of these: exact arithmetic says that it is not a tie, and the engines' answer is wrong
+  uint64_t wrong = 0;    ///< of these: it is not a tie in exact arithmetic, and the engines' answer is right
+  uint64_t right = 0;    ///< of these: it is not a tie in exact arithmetic, and the engines' answer is wrong
   uint64_t other_t = 0;  ///< the same triangle at another t
   double largest = 0;    ///< difference of t, in units of its last place
   uint64_t hits = 0;     ///< of the same triangle, by rays that ask what they hit
@@ -28,7 +28,7 @@ struct TriangleAnswers {
   uint64_t far_off = 0;  ///< of the hits: the error is kMostError or more
 };
 inline constexpr double kMostError = 16;
-/// Of the distance, some 50 away, of a slanted triangle whose corners are floats of up to 1e9, multiples of 64.
+/// Of the distance, some 50 away, of a slanted triangle with corners that are floats of up to 1e9, multiples of 64.
 inline constexpr double kLargeError = 8;
 
 struct TriangleWidthRow {

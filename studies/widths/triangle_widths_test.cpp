@@ -41,7 +41,7 @@ TEST(TriangleWidths, TellWhatEachWidthChanges) {
     EXPECT_LE(row.picture.visible, row.picture.pixels);
     EXPECT_EQ(row.picture.largest == 0, row.picture.visible == 0);
   }
-  // The engines' test, and what says the same.
+  // The engines' test, and what agrees with it.
   for (const size_t i : {0, 1}) {
     EXPECT_EQ(tried.rows[i].frame.other + tried.rows[i].frame.other_t + tried.rows[i].picture.pixels, 0u);
     EXPECT_EQ(tried.rows[i].soups.other + tried.rows[i].soups.other_t, 0u);

@@ -39,7 +39,7 @@ struct Source {
   /// Of the catalogue all, or those that units have, or the others.
   bool in_units, beside_units;
   bool judged;   ///< survivors have judgements
-  bool reports;  ///< say where the fault is: not of a netlist, nor of most benches
+  bool reports;  ///< name the place of the fault: not of a netlist, nor of most benches
 };
 
 const std::map<std::string, Source> kSources = {
@@ -66,9 +66,9 @@ struct Options {
 struct Fault {
   int number = 0;
   std::string file;  ///< of rtl/, or what stands for it where a tool has made the logic
-  std::string mistake;
+  std::string what;
 
-  std::string id() const { return file + ": " + mistake; }
+  std::string id() const { return file + ": " + what; }
 };
 
 /// What `python3 -m faults` has left: of the faults those that the options leave, and whether all that are judged are

@@ -25,7 +25,7 @@ std::vector<Bench> read_benches(const std::string& path, const std::string& sour
 std::vector<Bench> benches_of(const std::vector<Bench>& benches, const Hierarchy& hierarchy, const std::string& module);
 
 /// Runs them in turn until one fails: then the outcome is by this bench, and its text what it prints from the first
-/// line on that says so.
+/// line on that reports it.
 void run_benches(const std::vector<Bench>& benches, Outcome& outcome);
 
 }  // namespace raypool::faulty

@@ -1,4 +1,4 @@
-// Does a lockstep's report send its reader to the right place? Where a mistake is, and which modules instantiate which.
+// Does a lockstep's report send its reader to the right place? Where a fault is, and which modules instantiate which.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@ namespace raypool::faulty {
 /// "warp" of "rp_warp.v": modules are called without their prefix here.
 std::string module_of(const std::string& file);
 
-/// Modules and who instantiates them, from the Verilog.
+/// Modules and the modules that instantiate them, from the Verilog.
 class Hierarchy {
  public:
   explicit Hierarchy(const std::string& rtl_folder);
@@ -25,15 +25,15 @@ class Hierarchy {
 };
 
 /// Files that the report's `look at` names first, without folder: before the first semicolon, and at most three. What a
-/// simulator says when it stops counts too.
+/// simulator prints when it stops counts too.
 std::vector<std::string> files_named(const std::string& report);
 
 enum class Verdict { Right, Parent, Wrong, None };
 
-/// Of the files named, against that of the mistake: itself, or one that instantiates it.
+/// Of the files named, against that of the fault: itself, or one that instantiates it.
 Verdict judge(const Hierarchy& hierarchy, const std::vector<std::string>& named, const std::string& file);
 
-/// Whether the mistake's file is the first or the second of those named.
+/// Whether the fault's file is the first or the second of those named.
 bool named_early(const std::vector<std::string>& named, const std::string& file);
 
 }  // namespace raypool::faulty

@@ -17,7 +17,7 @@ TEST(FilesNamed, AreThoseBeforeTheFirstSemicolonAndAtMostThree) {
   EXPECT_EQ(files_named("another fault than expected in rtl/room/a.v"), std::vector<std::string>());
 }
 
-TEST(FilesNamed, AreWhatTheSimulatorSaysWhenItStops) {
+TEST(FilesNamed, AreWhatTheSimulatorPrintsWhenItStops) {
   EXPECT_EQ(files_named("signal 6: %Error: rtl/compute/rp_data_cache.v:203: Verilog $stop"),
             std::vector<std::string>{"rp_data_cache.v"});
 }

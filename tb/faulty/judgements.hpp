@@ -7,9 +7,9 @@
 
 namespace raypool::faulty {
 
-/// What is known of a fault that nothing notices.
+/// What is known of a fault that nothing detects.
 struct Judgement {
-  bool equivalent = false;  ///< no program can tell it from the sound machine
+  bool equivalent = false;  ///< no program runs otherwise than on the sound machine
   std::string reason;
 };
 
@@ -19,7 +19,7 @@ class Judgements {
   /// judged, nor asked for. Throws InputError.
   Judgements(const std::string& path, const std::string& source);
 
-  /// Counts a survivor of this run, and says what is known of it: "equivalent: ...", "a gap: ...", or "NOT JUDGED".
+  /// Counts a survivor of this run, and returns what is known of it: "equivalent: ...", "a gap: ...", or "NOT JUDGED".
   std::string survived(const std::string& id);
   int equivalent() const { return equivalent_; }  ///< survivors of this run
   int open() const { return open_; }              ///< not judged

@@ -1,4 +1,4 @@
-// Would a faulty unit be noticed? One trial runs one fault on random programs in lockstep until something differs.
+// Is a faulty unit detected? One trial runs one fault on random programs in lockstep until something differs.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace raypool::faulty {
 struct Outcome {
   enum class Kind : uint8_t { Survived, Difference, Hang, Stopped, Crashed, Bench };
   Kind kind = Kind::Survived;
-  uint64_t programs = 0;  ///< run, the last one noticed it
-  std::string by;         ///< what noticed it: a machine, or a bench
+  uint64_t programs = 0;  ///< run, the last one detected it
+  std::string by;         ///< what detected it: a machine, or a bench
   std::string text;       ///< the report
 };
 inline constexpr EnumArray<Outcome::Kind, std::string_view, 6> kKindNames = {
@@ -30,7 +30,7 @@ struct Machine {
   std::string library;
 };
 
-/// Runs one program on the machine, whose fault has been selected: the outcome's kind and text.
+/// Runs one program on the machine, after its fault has been selected: the outcome's kind and text.
 void run_program(const Machine& machine, const RandomProgram& program, Outcome& outcome);
 
 }  // namespace raypool::faulty

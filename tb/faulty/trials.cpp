@@ -121,7 +121,7 @@ std::string to_json(const Trial& trial, const Outcome& outcome) {
   return json.dump() + "\n";
 }
 
-/// [id] its outcomes: trials that nothing tells apart share one.
+/// [id] its outcomes: trials that do not differ share one.
 std::map<std::string, std::vector<Outcome>> read_outcomes(const std::string& path) {
   std::map<std::string, std::vector<Outcome>> outcomes;
   std::ifstream file(path);
@@ -136,8 +136,8 @@ std::map<std::string, std::vector<Outcome>> read_outcomes(const std::string& pat
   return outcomes;
 }
 
-/// Says now and then how far it is. Time left: as the trials so far took, which is too
-/// little while long ones are under way.
+/// Shows now and then how far it is. Time left: as the trials so far took, which is too little while long ones are
+/// under way.
 class Progress {
  public:
   Progress(std::string what, size_t all) : what_(std::move(what)), all_(all) {}

@@ -11,8 +11,8 @@
 
 namespace raypool::faulty {
 
-/// Tells, before a program begins, how many there will have been and on what it runs;
-/// known also when the process then dies.
+/// Reports, before a program begins, how many there will have been and on what it runs; known also when the process
+/// then dies.
 using Note = std::function<void(uint64_t programs, std::string_view by)>;
 
 struct Trial {

@@ -1,6 +1,6 @@
 // Replays a recorded frame on chip in a 4-state simulator: vvp -n chip_replay.vvp +vectors=FILE, which
-// sim/cosim/chip_recorder.hpp has written. What a payload is while nothing says that it is valid, nobody may look at:
-// it is X. Ports between blocks are compared where they leave one; those of a traverser inside only there.
+// sim/cosim/chip_recorder.hpp has written. A payload that no valid goes with must not be looked at: it is X. Ports
+// between blocks are compared where they leave one; those of a traverser inside only there.
 // The parameters of the chip come as the macro CHIP_PARAMETERS, ".WARPS(2), .LANES(2), ...", so that they need not be
 // repeated here.
 `default_nettype none

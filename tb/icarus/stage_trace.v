@@ -77,7 +77,7 @@ module stage_trace #(
 
   initial begin
     if (!$value$plusargs("program=%s", file)) begin
-      $display("stage_trace: say +program=FILE, one hexadecimal 64-bit word a line");
+      $display("stage_trace: pass +program=FILE, one hexadecimal 64-bit word a line");
       $finish;
     end
     $readmemh(file, program);

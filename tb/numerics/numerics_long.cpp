@@ -39,7 +39,7 @@ constexpr Operation kBinary[] = {Operation::Add,  Operation::Sub,       Operatio
                                  Operation::Min,  Operation::Max,       Operation::Equal,   Operation::NotEqual,
                                  Operation::Less, Operation::LessEqual, Operation::Greater, Operation::GreaterEqual};
 
-/// Who judges: the first oracle of an operation, MPFR once more, or the definition of a Newton unit.
+/// The judge: the first oracle of an operation, MPFR once more, or the definition of a Newton unit.
 enum class Judge : uint8_t { First, Mpfr, Newton2, Newton1, Newton0 };
 constexpr Judge kNewton[] = {Judge::Newton2, Judge::Newton1, Judge::Newton0};
 constexpr int kJudges = 5;
@@ -229,7 +229,7 @@ int run(int argc, char** argv) {
   if (only != 0 && std::find(std::begin(kSignificands), std::end(kSignificands), only) == std::end(kSignificands))
     throw std::runtime_error(fmt::format("significand {} is none of 24, 20, 16, 13 and 11", only));
   std::printf(
-      "oracles: SSE%s; integers for frsqrt and Newton units; MPFR %s for fmin and fmax, and where the table says so\n",
+      "oracles: SSE%s; integers for frsqrt and Newton units; MPFR %s for fmin and fmax, and where the table names it\n",
       host_has_fma() ? " and FMA of this host" : " of this host", mpfr_get_version());
   for (width = 0; width < std::size(kSignificands); ++width) {
     if (only != 0 && only != significand()) continue;

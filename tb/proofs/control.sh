@@ -1,7 +1,7 @@
 #!/bin/bash
 # Proves the control logic: tb/proofs/control.sh [--quick | --broken] [NAME...]. NAME is a checker
 # tb/proofs/control/NAME.v; without one, all of them.
-# A checker is a module `check` around what it checks, with assumptions and assertions, and says in its head
+# A checker is a module `check` around what it checks, with assumptions and assertions; its head has
 #   @modules FILE...           of rtl/, without prefix and .v
 #   @proves SENTENCE           printed when it holds, once for each
 #   @parameters NAME=VALUE...  set of parameters to prove it for; more lines are more
@@ -32,8 +32,8 @@ folder=$(mktemp -d)
 exec 3>&1
 trap 'rm -rf "$folder"' EXIT
 
-# said KEY CHECKER: what the checker's head says with @KEY, one a line.
-said() {
+# of_head KEY CHECKER: what the checker's head has with @KEY, one a line.
+of_head() {
   awk -v key="// @$1 " '
     function flush() { if (line != "") print line; line = "" }
     index($0, key) == 1 { flush(); line = substr($0, length(key) + 1); next }
@@ -54,7 +54,7 @@ solve() {
     setundef -undriven -anyseq; setundef -anyseq; formalff -clk2ff -ff2anyinit; techmap; opt -fast; dffunmap; aigmap
     opt_clean; setundef -undriven -anyseq; setundef -anyseq
     write_aiger -I -B -zinit -no-startoffset $folder/check.aig" > "$folder/console" 2>&1 ||
-    { echo "FAILED: $checker: yosys says"; tail -3 "$folder/console"; exit 1; } >&3
+    { echo "FAILED: $checker: yosys reports"; tail -3 "$folder/console"; exit 1; } >&3
   yosys-abc -c "read_aiger $folder/check.aig; fold; strash; $engine; print_status" > "$folder/abc" 2>&1 || true
   verdict=unknown depth=
   if grep -q '^Status = 1' "$folder/abc"; then verdict=proved
@@ -70,8 +70,8 @@ for name in "${names[@]}"; do
   [ -f "$checker" ] || { echo "control.sh: there is no checker '$name'; see tb/proofs/control" >&2; exit 1; }
   [ -z "$quick" ] || ! grep -q '^// @slow' "$checker" || continue
   files=
-  for module in $(said modules "$checker"); do files+=" $(printf %s rtl/*/"rp_$module.v")"; done
-  mapfile -t sets < <(said parameters "$checker")
+  for module in $(of_head modules "$checker"); do files+=" $(printf %s rtl/*/"rp_$module.v")"; done
+  mapfile -t sets < <(of_head parameters "$checker")
   [ ${#sets[@]} -gt 0 ] || sets=("")
   for set in "${sets[@]}"; do
     [ -z "$only_broken" ] || break
@@ -85,7 +85,7 @@ for name in "${names[@]}"; do
       tail -3 "$folder/abc"
     fi
   done
-  [ -n "$only_broken" ] && echo "$name" || said proves "$checker" | sed 's/^/  - /'
+  [ -n "$only_broken" ] && echo "$name" || of_head proves "$checker" | sed 's/^/  - /'
   [ -z "$quick" ] || continue
   broken=0
   while read -r module script; do
@@ -105,7 +105,7 @@ for name in "${names[@]}"; do
       failed=1
       echo "FAILED: $name: $verdict with $file broken by '$script'"
     fi
-  done < <(said break "$checker")
+  done < <(of_head break "$checker")
   [ $broken -gt 0 ] || { echo "FAILED: $name: no broken copy was refuted"; failed=1; }
   echo "  broken copies refuted: $broken"
 done

@@ -1,9 +1,9 @@
 // What a floating-point multiplier must give, written for proofs and not for speed: the exact product of the mantissas
-// as an integer, one rounding to nearest even. The product comes from outside, so that nobody has to see through a
+// as an integer, one rounding to nearest even. The product comes from outside, so that no proof has to see through a
 // multiplication: ones_i is that of the stored bits with a one before each, and what a subnormal number has not is
-// taken off. possible_o says whether the rest may be the product of the two mantissas by what is known of any
-// product, a zero for a zero and a leading one at the sum of the factors' leading ones or one above. Combinational.
-// SUBNORMALS as in rtl/arith/rp_float_multiplier.v. Shares nothing with it.
+// taken off. possible_o is high if the rest may be the product of the two mantissas by what is known of any product, a
+// zero for a zero and a leading one at the sum of the factors' leading ones or one above. Combinational. SUBNORMALS as
+// in rtl/arith/rp_float_multiplier.v. Shares nothing with it.
 `default_nettype none
 module exact_product #(
   parameter integer EXPONENT_BITS = 5,

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Proves rtl/arith/rp_float_multiplier.v, as a 16-bit multiplier (5 exponent bits, 10 of mantissa), right for all
 # operands in both subnormal modes, in two parts: its tree's two numbers add up to the product of the mantissas, and
-# with any two numbers in the tree's place whose sum may be a product of the mantissas the multiplier equals
+# with any two numbers in the tree's place that may add up to a product of the mantissas the multiplier equals
 # tb/proofs/exact_product.v. It uses no more of the tree than the sum, modulo 2^22. tb/proofs/float_multiplier.sh
 # [EXPONENT_BITS MANTISSA_BITS]. FLOAT_MULTIPLIER and MULTIPLY_TREE name others to try.
 set -eu -o pipefail

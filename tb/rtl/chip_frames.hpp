@@ -1,4 +1,4 @@
-// For tests: frames on a chip, with the real kernels, amid surroundings of chance.
+// For tests: frames on a chip, with the real kernels, amid random surroundings.
 #pragma once
 
 #include <fmt/format.h>
@@ -51,7 +51,7 @@ inline Program storing_kernels(const Configuration& configuration, uint32_t addr
   return program;
 }
 
-/// Gives materials and light colours that are hard to get right: rays whose weight is 0 or -0 in some channels or in
+/// Gives materials and light colours that are hard to get right: rays with a weight of 0 or -0 in some channels or in
 /// all, or so small that a product is a subnormal number. `mirrors`: nothing is lost in a reflection.
 inline void harden(Scene& scene, uint32_t seed, bool mirrors = false) {
   Random random(seed);

@@ -32,8 +32,8 @@ struct Tamper {
   uint32_t from = 5;
 };
 
-/// RTL that shows the lockstep another value of one signal. Its ports stay right: nothing but the inspection can
-/// notice.
+/// RTL that shows the lockstep another value of one signal. Its ports stay right: nothing but the inspection can detect
+/// it.
 class TamperedChip : public ChipDevice {
  public:
   TamperedChip(std::unique_ptr<ChipDevice> chip, const Tamper& tamper) : chip_(std::move(chip)), tamper_(tamper) {
@@ -145,7 +145,7 @@ TEST(InspectedChip, HasNothingInsideWhereItIsRight) {
   const Machine machine = smallest_inside();
   const Configuration& c = machine.configuration;
   for (const uint32_t tree : {0u, 1u, 2u}) {
-    Drawing drawing(machine, {5, 7, 3, true}, scene_of_chance(tree + 1, 60), tree);
+    Drawing drawing(machine, {5, 7, 3, true}, random_scene(tree + 1, 60), tree);
     const auto chip = make_lockstep_chip(c, load_rtl_chip(chip_library(machine), c, machine.units), drawing.memory(),
                                          c.name, kInspectAlways);
     drawing.draw_on(*chip);

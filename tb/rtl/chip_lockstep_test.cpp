@@ -1,5 +1,5 @@
-// rtl/chip/rp_chip.v in lockstep with its model while it draws frames with the real kernels, amid surroundings of
-// chance: all ports of all blocks in every cycle, on machines whose corners are different ones.
+// rtl/chip/rp_chip.v in lockstep with its model while it draws frames with the real kernels, amid random surroundings:
+// all ports of all blocks in every cycle, on machines that differ in their corner cases.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -133,7 +133,7 @@ TEST_P(ChipLockstep, DrawsFramesWithoutADifference) {
   if (c.chip.intersection_pool_size == 1) {
     EXPECT_GT(reached.full, 20u);  // a larger one seldom is
   }
-  if (machine.units > 2) {  // who shade together
+  if (machine.units > 2) {  // units that shade together
     EXPECT_GT(reached.frame_waited, 20u);
   }
   EXPECT_GT(reached.tree_lines, 20u);

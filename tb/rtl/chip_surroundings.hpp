@@ -1,6 +1,6 @@
-// For tests: what is around a chip, of chance. A memory that takes and answers when it likes, a frame buffer that does
-// not always take, and a traverser that knows no scene: of each ray it says at random what becomes of it, when it
-// likes, and asks for trees that it does not read.
+// For tests: random surroundings of a chip. A memory that takes and answers when it likes, a frame buffer that does not
+// always take, and a traverser that knows no scene: of each ray it decides at random what becomes of it, and when, and
+// asks for trees that it does not read.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,12 +18,12 @@
 
 namespace raypool::test {
 
-/// One in so many cycles, 0 never: who could take something does not; of a package being put a beat is late; the
-/// traverser asks for its tree. It has so many rays inside at most, and each for so many cycles at most; they leave in
-/// cycles that are multiples of `burst`. With `frame` the frame buffer takes one in so many cycles only. The memory has
-/// a line's first beat so many cycles after its request at most. With `shut` each port takes nothing for so many
+/// One in so many cycles, 0 never: a port that could take something does not; of a package being put a beat is late;
+/// the traverser asks for its tree. It has so many rays inside at most, and each for so many cycles at most; they leave
+/// in cycles that are multiples of `burst`. With `frame` the frame buffer takes one in so many cycles only. The memory
+/// has a line's first beat so many cycles after its request at most. With `shut` each port takes nothing for so many
 /// cycles, and then is open for as many, so that what is before it fills up and then leaves while more comes. Of one in
-/// `age` rays the traverser says that it has been reflected many times.
+/// `age` rays the traverser makes one that has been reflected many times.
 struct Traffic {
   uint32_t stall = 0, gap = 0, tree = 0;
   uint32_t inside = 1000, cycles = 1, latency = 1, burst = 1, frame = 0, shut = 0, age = 0;
@@ -174,7 +174,7 @@ class Surroundings {
     return ray;
   }
 
-  // Rays leave in any order; one whose intersections have no room lets others pass.
+  // Rays leave in any order; one with no room for its intersections lets others pass.
   void put(const ChipOutputs& out, ChipInputs& in, const Traffic& traffic) {
     if (put_beats_ == 0 && !put_waits_) {
       const auto may_go = [&](const Inside& ray) {
@@ -185,7 +185,7 @@ class Surroundings {
       const auto any = std::find_if(inside_.begin(), inside_.end(), [&](const Inside& ray) {
         return ray.done <= cycles && ray.becomes != ImportKind::None;
       });
-      // Who does not look whether there is room waits, and the others behind it: while there will be some.
+      // A ray that is put without looking for room waits, and the others behind it: while there will be some.
       const bool waits = found == inside_.end() && any != inside_.end() && out.device.import_request_valid &&
                          out.device.import_request_kind == any->becomes;
       if (found == inside_.end() && !waits) return;

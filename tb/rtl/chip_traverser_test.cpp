@@ -62,7 +62,7 @@ TEST_P(ChipTraverser, DrawsThePictureOfTheNativeEngineWithoutADifference) {
 std::deque<Drawing> other_drawings(const Machine& machine) {
   std::deque<Drawing> drawings;
   for (const auto& [seed, triangles] : {std::pair{3u, 40u}, {4u, 3u}, {5u, 90u}})
-    drawings.emplace_back(machine, Picture{2 + seed, 9 - seed, 1 + seed % 3, true}, scene_of_chance(seed, triangles),
+    drawings.emplace_back(machine, Picture{2 + seed, 9 - seed, 1 + seed % 3, true}, random_scene(seed, triangles),
                           seed == 5 ? 7 : 0);
   drawings.emplace_back(machine, Picture{7, 5, 3, true}, make_cornell());
   return drawings;
@@ -97,7 +97,7 @@ TEST_P(ChipTraverser, DrawsOneTreeAfterAnotherWithoutAReset) {
   EXPECT_GT(chip->lockstep_counts().counters, 0u);
 }
 
-// The Verilated chip as a module of SystemC, whose memories answer in a time of their own.
+// The Verilated chip as a module of SystemC, with memories that answer in a time of their own.
 TEST_P(ChipTraverser, DrawsTheSameInSystemCWithDramOfBanks) {
   const Machine machine = GetParam()();
   const Configuration& c = machine.configuration;
@@ -130,7 +130,7 @@ TEST_P(ChipTraverser, DrawsTheSameInSystemCWithDramOfBanks) {
 INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest_inside, full_inside),
                          [](const auto& machine) { return machine.param().configuration.name; });
 
-/// What is no tree, and the fault that comes of it.
+/// Malformed trees, and the faults that come of them.
 struct Garbage {
   const char* name;
   TreeFaultCode code;
@@ -152,7 +152,7 @@ const Garbage kGarbage[] = {
     {"fewer nodes", TreeFaultCode::NodeBeyond, [](TreeImage& tree) { tree.setup.triangles_line = 1; }},
 };
 
-TEST_P(ChipTraverser, StopsWithTheSameFaultWhereItsMemoryHoldsNoTree) {
+TEST_P(ChipTraverser, StopsWithTheSameFaultOnMalformedTrees) {
   const Machine machine = GetParam()();
   const Configuration& c = machine.configuration;
   const std::string library = chip_library(machine);
@@ -164,7 +164,7 @@ TEST_P(ChipTraverser, StopsWithTheSameFaultWhereItsMemoryHoldsNoTree) {
         make_lockstep_chip(c, load_rtl_chip(library, c, machine.units), drawing.memory(), c.name);
     try {
       drawing.draw_on(*chip);
-      ADD_FAILURE() << "a picture of no tree";
+      ADD_FAILURE() << "a picture of a malformed tree";
     } catch (const TraverserFault& fault) {
       EXPECT_EQ(fault.fault.code, garbage.code) << fault.what();
       // The host might go on: it stays, and the frame does not end.
@@ -246,7 +246,7 @@ void expect_named(const BrokenPort& broken, void (*prepare)(TreeImage&)) {
       drawing.memory());
   try {
     drawing.draw_on(*chip);
-    ADD_FAILURE() << "nobody noticed";
+    ADD_FAILURE() << "no difference was reported";
   } catch (const LockstepDifference& difference) {
     const std::string report = difference.what();
     EXPECT_EQ(report.find("lockstep difference in chip: " + std::string(broken.port) + " of traverser is "), 0u)
@@ -281,7 +281,7 @@ TEST(ChipTraverser, ThatIsBrokenIsNamed) {
   for (const BrokenPort& each : ports) expect_named(each, [](TreeImage&) {});
 }
 
-TEST(ChipTraverser, WhoseFaultIsBrokenIsNamed) {
+TEST(ChipTraverser, ABrokenFaultPortIsNamed) {
   const BrokenPort ports[] = {
       broken("fault_valid", [](TreeFault& fault) { return flip(fault.valid); }),
       broken("fault_code",

@@ -16,7 +16,7 @@
 
 namespace raypool::test {
 
-/// Names the first port that differs; empty when all agree. What belongs to a valid counts only while it is set.
+/// Names the first port that differs; empty when all agree. What goes with a valid counts only while it is set.
 inline std::string difference(const UnitOutputs& a, const UnitOutputs& b) {
   std::string names;
   const auto differs = [&](bool different, const char* name) {

@@ -1,4 +1,4 @@
-// For tests: scenes whose triangles are hard to tell apart: on a grid, or nearly all in one place.
+// For tests: scenes with triangles that are hard to separate: on a grid, or nearly all in one place.
 #pragma once
 
 #include <algorithm>

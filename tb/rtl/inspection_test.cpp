@@ -23,8 +23,8 @@ struct Tamper {
   uint32_t from = 20;
 };
 
-/// RTL that shows the lockstep another value of one signal. Its outputs stay right:
-/// nothing but the inspection can notice.
+/// RTL that shows the lockstep another value of one signal. Its outputs stay right: nothing but the inspection can
+/// detect it.
 class TamperedUnit : public ComputeUnit {
  public:
   TamperedUnit(std::unique_ptr<ComputeUnit> unit, const Tamper& tamper) : unit_(std::move(unit)), tamper_(tamper) {

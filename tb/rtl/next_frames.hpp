@@ -11,7 +11,7 @@ namespace raypool::test {
 /// Bytes that a chip's memory has behind the first scene, for those of the next ones that have more materials.
 inline constexpr uint32_t kRoomForNext = 1024;
 
-/// Draws them on a chip whose memory this is, each as soon as the chip is ready for it. The pictures must be the native
+/// Draws them on the chip with this memory, each as soon as the chip is ready for it. The pictures must be the native
 /// engine's; `told(result)` of each.
 template <typename Told>
 void draw_next(std::deque<Drawing>& drawings, Memory& memory, ChipDevice& chip, const Told& told) {

@@ -1,10 +1,10 @@
 // Draws random frames on tiny chips, rtl/chip/rp_chip.v in lockstep with its model: on machines that have every pair
 // of values of what a chip has (sim/cosim/covering.hpp), with pictures, traffic at every port and answers of the
 // traverser drawn at random; and on as many with the traverser inside, with scenes, trees and waits at the memories
-// drawn at random, whose pictures must be the native engine's. Some trees are none: of these the fault is compared, and
-// what the chip does behind it. A frame that fails is made smaller while it still does, and the command that repeats it
-// is printed. With --record one frame is drawn on the model alone and written down, for another simulator of the
-// Verilog (scripts/icarus_chip.sh).
+// drawn at random; their pictures must be the native engine's. Some trees are malformed: of these the fault is
+// compared, and what the chip does behind it. A frame that fails is minimised, and the command that repeats it is
+// printed. With --record one frame is drawn on the model alone and written down, for another simulator of the Verilog
+// (scripts/icarus_chip.sh).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -209,7 +209,7 @@ struct Drawn {
 };
 
 Scene scene_of(const Case& c) {
-  Scene scene = scene_of_chance(c.seed, c.triangles, c.mirrors);
+  Scene scene = random_scene(c.seed, c.triangles, c.mirrors);
   // In a closed box rays would be reflected as often as they may be.
   if (c.picture.depth > kMostShort && !c.mirrors) make_dull(scene, c.seed);
   if (c.deep) {
@@ -513,8 +513,8 @@ int main(int argc, char** argv) {
   app.add_option("--record", options.record, "folder that gets this frame as the model draws it; no Verilog is needed")
       ->needs(machine)
       ->needs(frame);
-  app.add_option("--tree", options.tree, "whose rtl/ the chips, kept there in chips/, are built from");
-  app.add_flag("--stop", options.stop, "end at the first frame that fails, and do not make it smaller");
+  app.add_option("--tree", options.tree, "source tree: the chips, kept there in chips/, are built from its rtl/");
+  app.add_flag("--stop", options.stop, "end at the first frame that fails, and do not minimise it");
   CLI11_PARSE(app, argc, argv);
   try {
     return raypool::run(options);

@@ -145,7 +145,7 @@ TEST_P(RtlUnit, CountsTheExportsOfAKernelBeforeItIsDone) {
 }
 
 // A narrow counter wraps in a kernel of 70,000 cycles and more, as a wide one does after days.
-TEST_P(RtlUnit, CountsOnWhereACounterBeginsAnew) {
+TEST_P(RtlUnit, CountsOnWhereACounterWraps) {
   const std::string library = library_of(GetParam());
   const Configuration configuration = configuration_of(GetParam());
   const std::vector<uint64_t> code = assembled("mov r1, 0; iadd r1, r1, 1; ilt p1, r1, 20000; @p1 jany 1; exit");

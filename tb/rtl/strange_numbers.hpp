@@ -1,4 +1,4 @@
-// For tests: frames whose rays, triangles and boxes have numbers that are hard to compute with.
+// For tests: frames in which rays, triangles and boxes have numbers that are hard to compute with.
 #pragma once
 
 #include <array>
@@ -87,7 +87,7 @@ class StrangeNumbers {
     const uint32_t triangle = random_() % count_of_triangles(setup);
     return corner_of(tree, setup, triangle, random_() % 3);
   }
-  // Eye rays go exactly through corners and edges of a triangle, or as nearly as floats can tell; from a corner of
+  // Eye rays go exactly through corners and edges of a triangle, or as nearly as floats can be; from a corner of
   // another one, or nearly in its plane. The light is such a point, too, so that shadow rays end on a triangle.
   void aim(std::array<uint32_t, kArguments>& arguments, const Memory& tree, const TreeSetup& setup) {
     const auto put = [&](int argument, const Vec3& value) {

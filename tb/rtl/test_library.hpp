@@ -13,7 +13,7 @@
 namespace raypool::test {
 
 /// Runs scripts/verilate.sh of the tree `tree` with `options` in the folder `name` below `units`. Returns this folder.
-/// What the script says is shown if it fails.
+/// The script's output is shown if it fails.
 inline std::string verilate(const std::string& name, const std::string& options, const std::string& tree = ".",
                             const std::string& units = RAYPOOL_TEST_UNITS) {
   std::string folder = units + "/" + name;

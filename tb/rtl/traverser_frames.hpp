@@ -1,5 +1,5 @@
-// For tests: chips with the traverser in Verilog inside, small scenes and trees of chance, and frames of them on a
-// board whose memories and frame buffer do not always take or give.
+// For tests: chips with the traverser in Verilog inside, small random scenes and trees, and frames of them on a board
+// with memories and a frame buffer that do not always take or give.
 #pragma once
 
 #include <algorithm>
@@ -104,10 +104,10 @@ inline std::vector<Machine> inside_machines() {
   return machines;
 }
 
-/// A soup of so many triangles, or a few more, with materials, camera and light of chance; at times all of it is one
+/// A soup of so many triangles, or a few more, with random materials, camera and light; at times all of it is one
 /// triangle many times. Half of them are in a closed box, with the camera, so that every ray hits something.
 /// `mirrors`: in a closed box of mirrors, so that rays are reflected as often as they may be.
-inline Scene scene_of_chance(uint32_t seed, uint32_t triangles, bool mirrors = false) {
+inline Scene random_scene(uint32_t seed, uint32_t triangles, bool mirrors = false) {
   Random random(seed);
   const auto share = [&random] { return static_cast<float>(random() % 1001) / 1000; };
   const auto near = [&](float distance) {
@@ -133,7 +133,7 @@ inline Scene scene_of_chance(uint32_t seed, uint32_t triangles, bool mirrors = f
     mesh.use(0);
     mesh.box((at - half).as<double>(), (at + half).as<double>());
   }
-  scene.name = "chance";
+  scene.name = "random";
   scene.materials.clear();
   for (uint32_t material = 1 + random() % 4; material > 0; --material) {
     const Vec3 kd = random() % 4 == 0 ? Vec3{0, 0, 0} : Vec3{share(), share(), share()};
@@ -146,7 +146,7 @@ inline Scene scene_of_chance(uint32_t seed, uint32_t triangles, bool mirrors = f
   scene.camera.fov = 2 + 60 * share();
   scene.light = {at + near((closed ? 1.9f : 4) * scale), {share(), 1, share()}};
   harden(scene, seed + 1, mirrors);
-  check_scene(scene, "a scene of chance");
+  check_scene(scene, "a random scene");
   return scene;
 }
 
@@ -213,7 +213,7 @@ class Drawing {
     while (!board.may_be_followed()) board.clock();
     return board.result();
   }
-  /// From a reset until `enough` says so, or the picture is drawn.
+  /// From a reset until `enough` returns true, or the picture is drawn.
   template <typename Enough>
   void draw_until(ChipDevice& chip, const Enough& enough) {
     chip::FixedLatencyStore store(*options_.memory, &tree_.memory, configuration_.chip);
@@ -221,7 +221,7 @@ class Drawing {
     while (!enough() && !board.may_be_followed()) board.clock();
   }
 
-  /// What has been drawn, and said of it, is what the native engine does and says.
+  /// What has been drawn, and reported of it, is what the native engine draws and reports.
   void expect_native(const ChipResult& result) const {
     NativeOptions native;
     native.width = static_cast<int>(options_.width);
@@ -246,8 +246,8 @@ class Drawing {
   static Bvh tree_of(const Bvh& good, uint32_t seed) {
     return seed == 0 || good.nodes.empty() ? good : random_tree(good, seed, static_cast<TreeShape>(seed % 4));
   }
-  // Some bits of what nodes say of their children, or of where nodes and triangles end. Their boxes and the triangles
-  // stay: they may be anything anyhow.
+  // Some bits of the nodes' children, or of where nodes and triangles end. Their boxes and the triangles stay: they may
+  // be anything anyhow.
   void spoil(uint32_t seed) {
     Random random(seed);
     TreeSetup& setup = tree_.setup;

@@ -11,8 +11,8 @@ function(arith_top name top prefix)
 endfunction()
 
 # arith_bench(NAME TOP): the test program NAME of unit/ROOM/NAME.cpp with the Verilated bench top TOP.
-# SYNTHESIS, NO_CLOCK_GATES: with the multipliers and the pipeline registers that hardware has, in whose place whole
-# units in simulation have quicker ones. Tests named Long run in `make numerics-long`.
+# SYNTHESIS, NO_CLOCK_GATES: with the multipliers and the pipeline registers that hardware has; whole units in
+# simulation have quicker ones instead. Tests named Long run in `make numerics-long`.
 function(arith_bench name top)
   raypool_bench(${name} EXCEPT *Long*)
   arith_top(${name} ${top} V${top})

@@ -16,7 +16,7 @@ raypool_verilate(triangle_edges_test SOURCES ${RAYPOOL_RTL}/traverser/rp_triangl
   PREFIX Vtriangle_edges TOP_MODULE rp_triangle_edges
   VERILATOR_ARGS -O3 --default-language 1364-2005 -DSYNTHESIS ${RAYPOOL_RTL_SEARCH})
 
-# The triangle pipe, whose rays are set up as those of a scene are, and apart from it the multiplier that it has.
+# The triangle pipe, with rays that are set up as those of a scene are, and apart from it the multiplier that it has.
 raypool_bench(triangle_pipe_test)
 target_link_libraries(triangle_pipe_test PRIVATE raypool_scene ${GMP_LIBRARY})
 raypool_block_models(triangle_pipe_test float_products "EXPONENT_BITS;MANTISSA_BITS;SUBNORMALS" 11_31_1)
@@ -52,7 +52,7 @@ raypool_bench(tree_cache_test)
 raypool_block_models(tree_cache_test tree_cache "LANES;SLOTS;LINES;WAYS;MSHRS;LINE_BITS;DATA_BITS"
   1_1_4_2_1_5_32 3_5_64_4_5_23_32 8_24_128_16_8_23_32 32_2_16_2_3_9_32)
 
-# Such a cache, of banks, with who is next at each.
+# Such a cache, of banks, with the next lane at each.
 raypool_bench(tree_banks_test)
 raypool_block_models(tree_banks_test tree_banks "LANES;SLOTS;LINES;WAYS;MSHRS;BANKS;LINE_BITS;DATA_BITS"
   1_2_4_2_1_1_5_32 3_5_64_4_6_2_23_32 16_3_64_2_12_4_20_32 2_9_256_4_16_16_12_32)
@@ -65,7 +65,7 @@ raypool_bench(lane_stacks_test)
 raypool_block_models(lane_stacks_test lane_stacks "SLOTS;ENTRIES;KEY_BITS;REFERENCE_BITS;BLOCK_BITS"
   1_8_3_12_7 3_9_21_20_3 5_8_6_10_4 8_12_8_8_7 24_16_32_32_7 33_64_2_9_2)
 
-# A lane of the traverser, with a triangle pipe whose multipliers the simulator has.
+# A lane of the traverser, with a triangle pipe that uses the simulator's multipliers.
 raypool_bench(traverser_lane_test)
 target_link_libraries(traverser_lane_test PRIVATE raypool_scene)
 set(raypool_multiplier)

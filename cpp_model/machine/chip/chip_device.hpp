@@ -29,8 +29,8 @@
 
 namespace raypool {
 
-/// Whether rtl/traverser/rp_traverser.v is in rtl/chip/rp_chip.v: then what stays for a frame says where its tree is.
-/// Otherwise a traverser may be at the chip's ports.
+/// Whether rtl/traverser/rp_traverser.v is in rtl/chip/rp_chip.v: then what stays for a frame includes where its tree
+/// is. Otherwise a traverser may be at the chip's ports.
 constexpr bool has_traverser(const ChipConfiguration& chip) { return chip.traverser == TraverserName::Hardware; }
 
 /// What stays for a frame; a host writes it before it starts one.
@@ -77,7 +77,7 @@ struct ChipInputs : TraverserPorts {
   bool frame_ready = false;
 };
 
-/// What belongs to a valid means something only while it is set; masks have one bit a unit.
+/// What goes with a valid means something only while it is set; masks have one bit a unit.
 struct ChipOutputs {
   bool ready = false;  ///< nothing of a frame is left inside: the next one may begin; stays until it does
   bool busy = false;   ///< a frame is being drawn
@@ -122,7 +122,7 @@ struct ChipOutputs {
   uint32_t quiet = 0;        ///< mask: nothing of the unit waits or is on its way at the memory port
   TraverserPorts traverser;  ///< of one inside
   TreeFault tree_fault;      ///< likewise
-  /// Of one inside, whose rays visit for long without a transfer at a port: lanes that its caches give a line, a bit
+  /// Of one inside, where rays visit for long without a transfer at a port: lanes that its caches give a line, a bit
   /// each, and with triangles one above them for its exit. kNotSeen: where only ports can be seen.
   uint32_t nodes_given = 0, leaves_given = 0;
   static constexpr uint32_t kNotSeen = UINT32_MAX;
@@ -162,9 +162,10 @@ class ChipDevice {
   virtual void clock(const ChipInputs& inputs) = 0;
   /// Clocks at least once and at most `cycles` times, and returns how often. What is valid at the inputs is so in the
   /// first cycle only, the readies stay. It ends early when in the next cycle something may be transferred, outputs()
-  /// change, or an engine cannot tell: in all but the first nothing but the units works.
+  /// change, or an engine cannot rule that out: in all but the first nothing but the units works.
   virtual uint64_t run(const ChipInputs& inputs, uint64_t cycles);
-  /// For who looks at signals inside: they show what a cycle with these inputs comes to, which clock() then ends.
+  /// Call it before you look at signals inside: they then show what a cycle with these inputs comes to, which clock()
+  /// ends.
   virtual void settle(const ChipInputs& inputs);
 
   virtual ChipCounts counts() = 0;

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/chip/rp_controller.v: the controller that counts what is under way, and decides in four cycles.
 //
-// It is told what happens, with the cycle in which it does, and asked what follows from what a cycle has come to: so
-// nobody need call it in cycles in which nothing changes.
+// Its caller passes in each event, with its cycle, and asks what follows from what a cycle has come to: so it need not
+// be called in cycles in which nothing changes.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The policy `fill`, ours, for large machines: it waits for full loads, keeps a kernel ready behind the one that runs,
-// and looks at what a kernel will produce and at who waits at the ports. docs/machine/controller.md has its rules
-// and what they give.
+// and looks at what a kernel will produce and at what waits at the ports. docs/machine/controller.md has its rules and
+// what they give.
 #pragma once
 
 #include <cstdint>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/chip/rp_frame_port.v: the frame buffer's port, which takes one contribution a cycle.
 //
-// The port is told what happens, with the cycle in which it does: so nobody need call it in the others. Within a cycle
-// the units come first, then the traverser, then the frame buffer.
+// The port is passed each event, with its cycle: so it need not be called in the others. Within a cycle the units come
+// first, then the traverser, then the frame buffer.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace raypool {
 class FramePort {
  public:
   bool room() const { return waiting_.count() < kPlaces; }
-  /// A contribution that is offered now is taken: there is room, and nobody has given one in this cycle.
+  /// A contribution that is offered now is taken: there is room, and none has been given in this cycle.
   bool ready(uint64_t cycle) const { return cycle != taken_at_ && room(); }
   /// Takes one; only if ready().
   void take(uint64_t cycle, const FrameContribution& contribution) {

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/chip/rp_intersection_pool.v: the intersection pool's queues, its port to the units, and its levels.
 //
-// It is told what happens, with the cycle in which it does, and says in which cycle a request is taken and a beat
-// comes: so nobody need call it in the others. Within a cycle the units come first, then the traverser.
+// It is passed each event, with its cycle, and gives the cycle in which a request is taken and a beat comes: so it need
+// not be called in the others. Within a cycle the units come first, then the traverser.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +53,7 @@ class IntersectionPool {
     give(unit);
     return true;
   }
-  /// The package whose request has been taken last.
+  /// The package of the last request that was taken.
   const Intersection& given() const { return given_; }
 
   /// Cycle of the next beat; kNever: none is on its way.

@@ -42,7 +42,7 @@ struct PolicyView {
 struct Choice {
   enum class Kind : uint8_t { Halt, Eye, Secondary, Shade };
   Kind kind = Kind::Halt;
-  uint32_t threads = 0;  ///< not of Eye, whose tile decides
+  uint32_t threads = 0;  ///< not of Eye: its tile decides
 };
 
 class KernelPolicy {

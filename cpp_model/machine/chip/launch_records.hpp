@@ -2,9 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/chip/rp_launch_records.v: what the kernels of a compute unit may still export.
 //
-// Each launch has a record until everything that its kernel has exported has left the unit: how many there are, the
-// unit says itself when the kernel ends. Who calls says in which cycle something happens, and asks after settle() of
-// it.
+// Each launch has a record until everything that its kernel has exported has left the unit: the unit itself reports how
+// many there are when the kernel ends. The caller passes the cycle of each event, and asks after settle() of it.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@ namespace raypool {
 
 class LaunchRecords {
  public:
-  static constexpr uint32_t kRecords = 4;  ///< two kernels that run, one that waits, one whose exports still leave
+  static constexpr uint32_t kRecords = 4;  ///< two kernels that run, one that waits, one with exports that still leave
 
   bool full() const { return count_ == kRecords; }
   bool empty() const { return count_ == 0; }

@@ -12,7 +12,7 @@ namespace raypool {
 
 class LaunchRules {
  public:
-  /// Of a chip whose full kernels have `contents` threads.
+  /// Of a chip where full kernels have `contents` threads.
   LaunchRules(const ChipConfiguration& chip, uint32_t contents, uint32_t units)
       : contents_(contents),
         units_(units),

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/chip/rp_memory_port.v: the chip's memory port, which device and traverser share.
 //
-// The port is told what happens, with the cycle in which it does, and says in which cycle the next request is served
-// and the next beat is handed on: so nobody need call it in the others. Within a cycle the memory comes first, taking
-// what it is offered, then the device, then the traverser, then the service; then beats are handed on.
+// The port is passed each event, with its cycle, and gives the cycle in which the next request is served and the next
+// beat is handed on: so it need not be called in the others. Within a cycle the memory comes first, taking what it is
+// offered, then the device, then the traverser, then the service; then beats are handed on.
 //
-// A memory that takes everything at once can be told so ahead of time: serve() and taken() may be called as soon as
-// there is a request, and the line's beats be given.
+// A memory that takes everything at once can be run ahead of time: serve() and taken() may be called as soon as there
+// is a request, and the line's beats be given.
 #pragma once
 
 #include <algorithm>
@@ -121,8 +121,8 @@ class MemoryPort {
   bool beat_ready() const { return beats_held_ < kPlaces; }
   /// The memory gives the next beat of the oldest line that misses some. Returns the cycle in which it is handed on.
   uint64_t beat(uint64_t cycle, const Beat& data) { return hand_on(cycle + 1, data); }
-  /// The same of a whole line whose beats come at the port's own pace, so that the last could be handed on in `end`.
-  /// Returns the cycle in which it is.
+  /// The same of a whole line with beats that come at the port's own pace, so that the last could be handed on in
+  /// `end`. Returns the cycle in which it is.
   uint64_t line(uint64_t end, const std::array<Beat, MemoryLine::kBeats>& data) {
     uint64_t last = 0;
     for (uint32_t i = 0; i < MemoryLine::kBeats; ++i) {
@@ -147,8 +147,8 @@ class MemoryPort {
 
   // ---- For others
 
-  /// True if nothing of compute unit `unit` waits or is on its way when this cycle is over: reads whose last beat has
-  /// not been handed on, writes that the memory has not taken.
+  /// True if nothing of compute unit `unit` waits or is on its way when this cycle is over: reads that have not had
+  /// their last beat handed on, writes that the memory has not taken.
   bool quiet(uint64_t cycle, uint32_t unit) const {
     return reading_[unit] == 0 && writing_[unit] == 0 && cycle >= written_[unit];
   }

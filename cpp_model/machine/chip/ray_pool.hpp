@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/chip/rp_ray_pool.v: the ray pool's port, its places and levels; and RayReader, its port to the traverser.
 //
-// The port is told what happens, with the cycle in which it does, and says in which cycle the next beat is taken: so
-// nobody need call it in the others. Within a cycle the units come first, then the traverser.
+// The port is passed each event, with its cycle, and gives the cycle in which the next beat is taken: so it need not be
+// called in the others. Within a cycle the units come first, then the traverser.
 #pragma once
 
 #include <algorithm>
@@ -39,12 +39,11 @@ class RayPool {
     uint32_t place = 0;  ///< of one that is kept
   };
 
-  /// Cycle from which on the next beat of a ray is taken; kNever: not while nobody wants to give one, or the pool is
-  /// full.
+  /// Cycle from which on the next beat of a ray is taken; kNever: not while none is offered, or the pool is full.
   uint64_t beats_from() const { return beats_from_; }
 
-  /// In this cycle a beat is offered that is not taken. May be said again. Room, once there, is taken by nobody else:
-  /// so the ray that wants it is begun at once.
+  /// In this cycle a beat is offered that is not taken. May be called again. Room, once there, cannot be taken by
+  /// another ray: so the ray that wants it is begun at once.
   void want(uint64_t cycle) {
     if (beats_from_ != kNever) return;
     wanting_ = full();

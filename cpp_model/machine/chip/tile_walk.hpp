@@ -4,7 +4,7 @@
 // curve, which stays longer among neighbours, so that rays find in the traverser's caches what those before them have
 // read.
 //
-// It is clocked; await() and next() are for who wants the order without its cycles.
+// It is clocked; await() and next() give the order without its cycles.
 #pragma once
 
 #include <algorithm>
@@ -138,7 +138,7 @@ class TileWalk {
     row_ = fits ? 0 : row_ * 2;
   }
 
-  // A step sees one square, whose upper left tile is at column_, row_. One that is outside, or one tile, is done with:
+  // A step sees one square, with its upper left tile at column_, row_. One that is outside, or one tile, is done with:
   // the next quarter of the smallest square around it comes that has one left. Of another one its first quarter comes.
   void follow_curve(bool outside) {
     uint32_t to = level_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The walk over the tiles for a reader that looks at it now and then: clocked up to a cycle when that is asked for. It
-// may be told which tiles to offer: the others take no time.
+// may be given the tiles to offer: the others take no time.
 #pragma once
 
 #include <cstdint>

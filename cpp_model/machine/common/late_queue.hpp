@@ -9,7 +9,7 @@
 
 namespace raypool {
 
-/// Cycles are counted by who holds it.
+/// Its owner counts the cycles.
 template <typename Entry>
 class LateQueue {
  public:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The pools' and memory's ports say in which cycle something happens, so that nobody need ask in the others.
+// The pools' and memory's ports give the cycle in which something happens, so that they need not be asked in the
+// others.
 #pragma once
 
 #include <cstdint>

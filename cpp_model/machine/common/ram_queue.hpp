@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/common/rp_ram_queue.v: a first-in first-out queue of a fixed size. What is pushed in a cycle is offered from the
-// next one on: who looks at it looks before the cycle's pushes.
+// next one on: look at it before the cycle's pushes.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// rtl/common/rp_round_robin.v: who is next among those who ask, one bit each.
+// rtl/common/rp_round_robin.v: the next among those that ask, one bit each.
 #pragma once
 
 #include <cstdint>

@@ -44,7 +44,7 @@ struct MemoryRequest {
   uint8_t id = 0;        ///< read only: comes back with the response; bits 6:5 are the unit's number, of a write too
 };
 
-/// The unit that a memory request or response belongs to.
+/// The unit of a memory request or response.
 inline uint32_t unit_of_id(uint8_t id) { return id >> 5; }
 
 struct MemoryResponse {
@@ -97,14 +97,14 @@ struct UnitInputs {
   bool export_ready = false;
   bool frame_ready = false;
 
-  /// The valids whose transfers the host takes in this cycle.
+  /// The valids of the transfers that the host takes in this cycle.
   uint32_t ready_signals() const {
     return memory_request_ready * signal::kMemoryRequest | import_request_ready * signal::kImportRequest |
            export_ready * signal::kExport | frame_ready * signal::kFrame;
   }
 };
 
-/// What belongs to a valid means something only while it is set; masks have one bit a unit.
+/// What goes with a valid means something only while it is set; masks have one bit a unit.
 struct UnitOutputs {
   bool launch_ready = false;
   bool idle = true;  ///< every unit: nothing runs, waits, is being exported or stored

@@ -103,7 +103,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
     port = clock_memory_arbiter(inputs);
     clock_launcher();
   }
-  // Write-back and the next instructions. Who retires in this cycle may issue in it, unless it has a fault.
+  // Write-back and the next instructions. A warp that retires in this cycle may issue in it, unless it has a fault.
   const uint32_t faulty = met_subnormal != 0 ? raise_subnormals(met_subnormal) : 0;
   if (retired != 0) {
     if ((retired & triples_) != 0) retired = end_elements(retired);
@@ -271,8 +271,8 @@ void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
   }
 }
 
-// The fetch arbiter's grants of the cycles up to `until`, and what the cache says to them. Part of step(), whose time
-// is that of the engine; so is clock_ray.
+// The fetch arbiter's grants of the cycles up to `until`, and the cache's answers. Inlined into step() like clock_ray:
+// the engine spends its time there.
 [[gnu::always_inline]] inline void CycleUnit::fetch(uint64_t until) {
   for (; fetch_cycle_ <= until; ++fetch_cycle_) {
     uint32_t& joining = timeline_.at(fetch_cycle_).fetch;
@@ -319,7 +319,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
     }
     if (faults) forget_fault();
     uint32_t met = step.subnormal, element = 0;
-    // Loads may fault, each at its own time; of the other triples no element can tell when it is executed.
+    // Loads may fault, each at its own time; of the other triples no element can observe when it is executed.
     if (instruction.alu() != AluType::Mem)
       for (const DecodedInstruction* next = instruction.next; next != nullptr; next = next->next)
         met |= uint32_t{execute(warp, *next).subnormal} << ++element;
@@ -369,7 +369,7 @@ void CycleUnit::want(uint32_t warp, const DecodedInstruction& instruction) {
 
 // ---- Triples of Mem and Ray. Those of other types are the dispatcher's.
 
-// Of the warps whose tasks are done, those whose instruction is.
+// Of the warps with a task done, those with the whole instruction done.
 uint32_t CycleUnit::end_elements(uint32_t warps) {
   for (uint32_t triples = warps & triples_; triples != 0; triples &= triples - 1) {
     const uint32_t warp = lowest(triples);
@@ -425,7 +425,7 @@ void CycleUnit::raise(const Fault& fault) {
   faulty_ = attention_ = true;
 }
 
-// Of warps that are done with an element: those whose element has met a subnormal number.
+// Of warps that are done with an element: those with an element that has met a subnormal number.
 uint32_t CycleUnit::raise_subnormals(uint32_t done) {
   uint32_t met = 0;
   for (; done != 0; done &= done - 1) {

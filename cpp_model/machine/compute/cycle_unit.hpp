@@ -3,10 +3,10 @@
 // Engine `model`: rtl/compute/rp_compute_unit.v, cycle by cycle. It joins the blocks, which are called
 // as in the RTL and have a file each.
 //
-// An instruction is executed by the functional core when it leaves the instruction buffer (a warp has one under way
-// at a time, so nobody can tell), and from then on only its time is modelled: the cycle in which an ALU will be done is
-// known when it is dispatched, and sets of warps are bit masks. So a cycle in which nothing happens costs next to
-// nothing, and one in which something does costs that.
+// An instruction is executed by the functional core when it leaves the instruction buffer (a warp has one under way at
+// a time, so nothing can observe this), and from then on only its time is modelled: the cycle in which an ALU will be
+// done is known when it is dispatched, and sets of warps are bit masks. So a cycle in which nothing happens costs next
+// to nothing, and one in which something does costs that.
 #pragma once
 
 #include <array>
@@ -91,7 +91,7 @@ class CycleUnit final : public ComputeUnit {
   const RayAlu& ray() const { return ray_; }
   int ray_task() const {
     return dispatcher_.task(AluType::Ray);
-  }  ///< the warp whose task arrives at the ray ALU in this cycle, or -1
+  }  ///< the warp with a task that arrives at the ray ALU in this cycle, or -1
 
  private:
   static constexpr uint64_t kAhead = InstructionBuffer::kAhead;
@@ -105,7 +105,7 @@ class CycleUnit final : public ComputeUnit {
     bool ray = false;
     uint32_t ray_warp = 0;
   };
-  struct MemoryPort {  // what the memory arbiter says in a cycle
+  struct MemoryPort {  // what the memory arbiter shows in a cycle
     bool instruction_request = false, instruction_ready = false, instruction_response = false;
     bool data_ready = false, data_response = false;
   };
@@ -185,8 +185,8 @@ class CycleUnit final : public ComputeUnit {
   std::vector<Fault> raised_;                        // in this cycle, or in that of fault_
   std::vector<PlannedFault> planned_faults_;         // of PCs outside the program
   std::array<FaultCode, kMostWarps> stack_fault_{};  // [warp] of the control instruction under way
-  uint32_t met_subnormal_ = 0;                       // warps whose instruction under way has met a subnormal number
-  std::array<uint8_t, kMostWarps> met_in_{};         // [warp] in which elements: bit 0 is the next that is done
+  uint32_t met_subnormal_ = 0;                // warps with an instruction under way that has met a subnormal number
+  std::array<uint8_t, kMostWarps> met_in_{};  // [warp] in which elements: bit 0 is the next that is done
   // Triples of Mem and Ray: warps that have one, and what is left of it behind the element that is wanted, or done.
   uint32_t triples_ = 0, followed_ = 0;
   std::array<uint8_t, kMostWarps> wants_left_{}, dones_left_{};

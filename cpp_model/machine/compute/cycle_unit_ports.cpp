@@ -108,7 +108,7 @@ uint64_t CycleUnit::fetching() const {
   return warps_ * counters_.single[kBusyCycles] - others;
 }
 
-// No simulation takes so long that wide ones begin anew.
+// No simulation takes so long that wide ones wrap.
 uint64_t CycleUnit::counter(int number) {
   return counter_bits_ == 48 ? counted(number) : counted(number) & ((uint64_t{1} << counter_bits_) - 1);
 }

@@ -116,7 +116,7 @@ TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
 }
 
 /// Cycles in which what stands between two instructions without stalls is written back, counted from its issue;
-/// one warp, whose lines are in the instruction cache.
+/// one warp, with its lines in the instruction cache.
 std::vector<uint64_t> written_back(const std::string& text, uint32_t lanes, bool overlaps, uint32_t flt_depth = 3) {
   Configuration configuration = make_configuration(1, lanes);
   configuration.triples = configuration.fma = true;
@@ -146,7 +146,7 @@ std::vector<uint64_t> written_back(const std::string& text, uint32_t lanes, bool
 }
 
 // docs/machine/architecture.md, section 3. The last is a `tid` behind it, which takes 4.
-TEST(CycleUnit, ATripleTakesTheCyclesThatArchitectureMdTells) {
+TEST(CycleUnit, ATripleTakesTheCyclesOfArchitectureMd) {
   using Cycles = std::vector<uint64_t>;
   EXPECT_EQ(written_back("ffma r1, r4, r7, r10", 4, false), (Cycles{6, 10}));
   EXPECT_EQ(written_back("ffma3 r1, r4, r7, r10", 4, true), (Cycles{6, 8, 10, 14}));
@@ -209,7 +209,7 @@ TEST(CycleUnit, CountersCountModuloTheirBits) {
     EXPECT_EQ(values[1][number], values[0][number] & 0xffff) << number;
     more += values[0][number] >> 16;
   }
-  EXPECT_GT(more, 2u) << "none has begun anew";
+  EXPECT_GT(more, 2u) << "none has wrapped";
 }
 
 // Two units, one clocked and one run; the memory answers after a fixed time, the ports are always ready.
@@ -392,8 +392,8 @@ TEST(Model, RefusesNumbersOfUnitsThatAMultiprocessorCannotHave) {
   EXPECT_THROW(make_model(make_configuration(2, 2), memory, 3), InputError);
 }
 
-// Each group of warps has its code in another line of one set of the instruction cache. Whoever's miss has fetched a
-// line must get to use it before it is replaced, whatever the memory's latency.
+// Each group of warps has its code in another line of one set of the instruction cache. The warp that has missed and
+// fetched a line must get to use it before it is replaced, whatever the memory's latency.
 TEST(CycleUnit, WarpsDoNotTakeLinesFromEachOtherForEver) {
   constexpr uint32_t kPlaces = 32, kApart = 32;  // instructions from place to place: the two ways of a set are 64 lines
   Configuration configuration = make_configuration(32, 1);

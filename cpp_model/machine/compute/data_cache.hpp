@@ -21,7 +21,7 @@ class DataCache {
     uint32_t quad = 0;                  ///< of the latest lookup: byte address / 16
     bool hit_0 = false, hit_1 = false;  ///< its line is in this way
   };
-  /// The access of a cycle, whose quadword was looked up in the cycle before.
+  /// The access of a cycle, to the quadword that was looked up in the cycle before.
   struct Access {
     bool valid = false, store = false;
     bool may_allocate = false;  ///< a miss may take an MSHR

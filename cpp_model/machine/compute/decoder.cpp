@@ -47,7 +47,7 @@ DecodedInstruction decode(uint64_t encoding, const Configuration& configuration,
   result.uses_b = has_operand(*fields.info, Operand::B) || has_operand(*fields.info, Operand::Rb);
   result.writes_register = raypool::writes_register(*fields.info);
   result.writes_predicate = raypool::writes_predicate(*fields.info);
-  // `st` stores register rb, whatever bit 37 says.
+  // `st` stores register rb, whatever bit 37 is.
   if (has_operand(*fields.info, Operand::Rb)) result.b_is_immediate = false;
   return result;
 }

@@ -24,7 +24,7 @@ struct DecodedInstruction {
   bool uses_b = false;  ///< has an operand B (or rb of `st`)
   bool writes_register = false;
   bool writes_predicate = false;
-  /// A triple's next element, null: this is the last, or no triple. Set by who keeps the elements.
+  /// A triple's next element, null: this is the last, or no triple. Set by the owner of the elements.
   const DecodedInstruction* next = nullptr;
   bool elements_depend = false;
 

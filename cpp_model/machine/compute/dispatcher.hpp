@@ -41,7 +41,7 @@ class Dispatcher {
 
   uint32_t instances(size_t type) const { return instances_[type]; }
   uint32_t depth(size_t type) const { return pipelines_[type][0].depth(); }
-  /// The warp whose task arrives at Mem or Ray in this cycle, or -1.
+  /// The warp with a task that arrives at Mem or Ray in this cycle, or -1.
   int task(AluType type) const { return task_[type].warp(); }
   uint32_t wants(AluType type) const { return want_[type]; }
   bool wants_pipelined() const { return want_types_ != 0; }
@@ -91,11 +91,11 @@ class Dispatcher {
       counters.waiting[type] += popcount(want);
     }
   }
-  /// Of the warps that want the same, who gets it, as a bit.
+  /// Of the warps that want the same, the one that gets it, as a bit.
   static uint32_t winner(uint32_t want, uint32_t first) {
     return lowest_bit((want & first) != 0 ? want & first : want);
   }
-  /// The grant of a cycle to Mem or Ray, which say themselves whether they take a task; some warp wants it.
+  /// The grant of a cycle to Mem or Ray, which decide themselves whether they take a task; some warp wants it.
   void grant(AluType alu, bool ready, uint32_t first, PerformanceCounters& counters) {
     const size_t type = static_cast<size_t>(alu);
     uint32_t& want = want_[type];
@@ -138,8 +138,8 @@ class Dispatcher {
   std::array<uint32_t, kAluTypes> instances_{};
   std::array<std::array<AluPipeline, kMostInstances>, kAluTypes> pipelines_{};
   EnumArray<AluType, TaskRegister, kAluTypes> task_;  // [type] of Mem and Ray
-  uint32_t followed_ = 0;                             // warps whose task is followed by the next element of its triple
-  std::array<Triple, kMostWarps> triples_{};          // [warp] of pipelined types
+  uint32_t followed_ = 0;                     // warps with a task that is followed by the next element of its triple
+  std::array<Triple, kMostWarps> triples_{};  // [warp] of pipelined types
 };
 
 }  // namespace raypool

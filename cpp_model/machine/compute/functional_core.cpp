@@ -115,8 +115,8 @@ bool FunctionalCore::fault(FaultCode fault_code) {
   return false;
 }
 
-// Finds the warp's next instruction and its mask. False if there is none: the result says why. Part of each step_lanes,
-// whose time is that of the functional engine.
+// Finds the warp's next instruction and its mask. False if there is none: the result has the reason. Inlined into each
+// step_lanes: the functional engine spends its time there.
 [[gnu::always_inline]] inline bool FunctionalCore::begin(uint32_t number) {
   Step& result = result_;
   if (result.status == Step::Status::Fault) return false;
@@ -176,7 +176,7 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
   return result_;
 }
 
-// What is no control instruction. False if it faults or has to wait.
+// Any but a control instruction. False if it faults or has to wait.
 template <int kLanes>
 bool FunctionalCore::execute(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes) {
   const uint32_t predicate_x = warp.predicates.read(instruction.x & 15);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The architecture itself: registers, predicates, PC stacks, ray slices and memory of one compute unit, without ports
-// and without time. step() executes one instruction of one warp and says everything it did. Engine `functional` runs on
-// it, and the lockstep compares with it.
+// and without time. step() executes one instruction of one warp and returns everything it did. Engine `functional` runs
+// on it, and the lockstep compares with it.
 #pragma once
 
 #include <array>
@@ -95,8 +95,8 @@ class FunctionalCore {
   /// fault.
   const Step& step(uint32_t warp) { return (this->*step_)(warp); }
 
-  /// After a fault: goes on as if nothing had happened. For a model whose faults take effect later
-  /// than their instruction is executed.
+  /// After a fault: goes on as if nothing had happened. For a model in which faults take effect later than their
+  /// instruction is executed.
   void forget_fault() { result_.status = Step::Status::NotRunning; }
 
   /// The instruction routine's next steps for a warp.

@@ -80,7 +80,7 @@ bool compares(std::string_view mnemonic, uint32_t a, uint32_t b) {
   return machine.core.predicate(0, 3) != 0;
 }
 
-TEST(FunctionalCore, IntegerInstructionsComputeWhatTheTableSays) {
+TEST(FunctionalCore, IntegerInstructionsFollowTheTable) {
   const uint32_t minus3 = static_cast<uint32_t>(-3);
   EXPECT_EQ(unary("mov", 9), 9u);
   EXPECT_EQ(binary("iadd", 0xffffffffu, 2), 1u);
@@ -98,7 +98,7 @@ TEST(FunctionalCore, IntegerInstructionsComputeWhatTheTableSays) {
   EXPECT_EQ(binary("umax", minus3, 7), minus3);
 }
 
-TEST(FunctionalCore, FloatInstructionsComputeWhatTheTableSays) {
+TEST(FunctionalCore, FloatInstructionsFollowTheTable) {
   const uint32_t three = as_bits(3), half = as_bits(0.5f);
   EXPECT_EQ(binary("fadd", three, half), as_bits(3.5f));
   EXPECT_EQ(binary("fsub", three, half), as_bits(2.5f));
@@ -113,7 +113,7 @@ TEST(FunctionalCore, FloatInstructionsComputeWhatTheTableSays) {
   EXPECT_EQ(unary("frcp", as_bits(2)), half);
 }
 
-TEST(FunctionalCore, ComparesGiveWhatTheTableSays) {
+TEST(FunctionalCore, ComparesFollowTheTable) {
   struct Row {
     const char* mnemonic;
     bool less, equal, greater;  // for (1, 2), (2, 2), (2, 1)
@@ -361,7 +361,7 @@ TEST(FunctionalCore, RoutinesOfTheRayMemoryMoveImportsAndExports) {
   EXPECT_EQ(rfb.rays[0][0], as_bits(2.5f)) << "results of an earlier step need not change";
 }
 
-TEST(FunctionalCore, APackageThatNobodyExpectsIsRefused) {
+TEST(FunctionalCore, RefusesAnUnexpectedPackage) {
   Machine machine(assembled("exit"));
   EXPECT_THROW(machine.core.import_package({}), std::logic_error);
 }

@@ -38,7 +38,7 @@ class ImportArbiter {
   static constexpr uint32_t kPlaces = 3;
 
   PortArbiter port_;
-  RequestQueue<uint8_t, kPlaces> order_;  // units whose packages are to come
+  RequestQueue<uint8_t, kPlaces> order_;  // units that still await packages
   int beats_, beat_ = 0;
 };
 

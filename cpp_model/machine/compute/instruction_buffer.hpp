@@ -34,7 +34,7 @@ class InstructionBuffer {
   uint32_t fetch_request() const { return q_.f_arbiter; }
   uint32_t fetch_pc(uint32_t warp) const { return q_.fetch_pc[warp]; }
   uint32_t pc(uint32_t warp) const { return q_.pc[warp]; }
-  /// Whose next instruction can be issued.
+  /// Warps that can issue their next instruction.
   uint32_t ready() const { return q_.f_full & q_.d_idle; }
   bool under_way(uint32_t warp) const { return (q_.d_idle >> warp & 1) == 0; }
 
@@ -47,7 +47,7 @@ class InstructionBuffer {
   void fetch_grant(uint32_t warps) { q_.f_arbiter &= ~warps; }
   void cache_hit(uint32_t warps) { q_.f_full |= warps; }
   void cache_miss(uint32_t warp) { q_.f_miss |= 1u << warp; }
-  /// A line has come back: whose lookups are worth repeating.
+  /// A line has come back: the warps that should repeat their lookups.
   uint32_t refill_done() {
     const uint32_t warps = q_.f_miss;
     q_.f_miss = 0;
@@ -62,7 +62,7 @@ class InstructionBuffer {
     q_.pc[warp] = q_.fetch_pc[warp];
   }
   void issue_control(uint32_t warp) { q_.control |= 1u << warp; }
-  /// Who retires in this cycle may issue in it. Returns those whose instruction was a control instruction.
+  /// Warps that retire in this cycle may issue in it. Returns those that have retired a control instruction.
   uint32_t retire(uint32_t warps) {
     const uint32_t control = warps & q_.control;
     q_.d_idle |= warps;

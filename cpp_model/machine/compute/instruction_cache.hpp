@@ -28,8 +28,8 @@ class InstructionCache {
     for (Set& set : sets_) set.line = {kNone, kNone};
   }
 
-  /// A lookup, whose result comes in the next cycle: true for a hit. Between clock() and end_cycle() of
-  /// its cycle; or ahead, while not busy().
+  /// A lookup; its result comes in the next cycle: true for a hit. Between clock() and end_cycle() of its cycle; or
+  /// ahead, while not busy().
   bool lookup(uint32_t warp, uint32_t pc) {
     const uint32_t line = pc >> 3;
     warp_ = warp;
@@ -46,11 +46,11 @@ class InstructionCache {
   void forget_miss() { missed_ = false; }
 
   // Registers, as they stand in the present cycle.
-  bool missed() const { return missed_; }  ///< the latest lookup, and clock() has not been told yet
+  bool missed() const { return missed_; }  ///< the latest lookup, before clock() is given it
   bool refill_done() const { return done_; }
   uint32_t result_warp() const { return warp_; }  ///< of the latest lookup
-  /// In the cycle after refill_done(): the warp whose miss began the fetch, as a set. If it does not ask then, it
-  /// waits its turn: it has had the line already.
+  /// In the cycle after refill_done(): the warp that began the fetch with its miss, as a set. If it does not ask then,
+  /// it waits its turn: it has had the line already.
   uint32_t first(uint64_t cycle) const { return cycle == first_cycle_ ? first_ : 0; }
   bool request_valid() const { return fetch_ == Fetch::Request; }
   uint32_t request_address() const { return fetch_line_ << 6; }

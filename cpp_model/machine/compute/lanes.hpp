@@ -57,7 +57,7 @@ struct Lanes {
   }
 };
 
-/// A row of the table without a case: names it and says where the case belongs, the ALU's header.
+/// A row of the table without a case: names it and the place of the case, the ALU's header.
 [[noreturn]] void not_modelled(Opcode opcode);
 
 inline int32_t as_signed(uint32_t value) { return static_cast<int32_t>(value); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// rtl/compute/rp_launcher.v: takes launches, of which one may wait while a kernel runs, starts the warps, and notices
+// rtl/compute/rp_launcher.v: takes launches, of which one may wait while a kernel runs, starts the warps, and detects
 // the end of the kernel. With kernel_overlap two kernels may run, the older one ending first.
 #pragma once
 

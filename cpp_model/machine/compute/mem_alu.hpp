@@ -40,7 +40,7 @@ class MemAlu {
     uint32_t mask() const { return count == kMaxLanes ? ~0u : (1u << count) - 1; }
   };
   struct Inputs {
-    int arriving = -1;  ///< warp whose task arrives in this cycle
+    int arriving = -1;  ///< warp with a task that arrives in this cycle
     bool response_valid = false;
     uint32_t response_id = 0, response_beat = 0;
     bool request_ready = false;
@@ -93,7 +93,7 @@ class MemAlu {
     return !q_.pass.valid && !q_.access.valid && !q_.done && !q_.park && sequencer_.idle() && cache_.idle() &&
            !requests_.valid();
   }
-  uint32_t done() const { return uint32_t{q_.done} << q_.end_warp; }  ///< the warp whose task is done, as a bit
+  uint32_t done() const { return uint32_t{q_.done} << q_.end_warp; }  ///< the warp with a task that is done, as a bit
   FaultCode fault() const { return q_.fault; }
   uint32_t fault_warp() const { return q_.fault_warp; }
   bool request_valid() const { return requests_.valid(); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/compute/rp_memory_arbiter.v: joins the instruction side and the data side to the unit's
-// memory port, and tells responses apart.
+// memory port, and routes responses.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ namespace raypool {
 /// valid.
 class Multiprocessor : public ComputeUnit {
  public:
-  /// 2 to kMostUnits single units of one configuration, whose intersections have so many beats.
+  /// 2 to kMostUnits single units of one configuration, with intersections of so many beats.
   Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units, int intersection_beats);
 
   uint32_t units() const override { return size32(units_); }
@@ -57,8 +57,8 @@ class Multiprocessor : public ComputeUnit {
   std::vector<std::vector<uint32_t>> spare_;  // lanes of past events, so that a traced cycle allocates nothing
 };
 
-/// One device of 1, 2 or 4 units of one configuration, whose intersections have so many beats: a single one is returned
-/// as it is. Throws InputError for other numbers.
+/// One device of 1, 2 or 4 units of one configuration, with intersections of so many beats: a single one is returned as
+/// it is. Throws InputError for other numbers.
 std::unique_ptr<ComputeUnit> make_multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units,
                                                  int intersection_beats = kIntersectionBeats);
 

@@ -111,7 +111,7 @@ TEST(Multiprocessor, GivesEveryUnitAKernelBeforeASecondWaitsAnywhere) {
 TEST(Multiprocessor, GivesPackagesToTheUnitsThatAskedAndMixesNoRays) {
   for (const size_t units : {2u, 4u}) {
     Fixture fixture(units, kRayProgram, 70);
-    // The pixel tells which package it was.
+    // The pixel identifies the package.
     fixture.chip.package = [](uint32_t n) {
       Intersection words;
       for (uint32_t i = 0; i < kIntersectionWords; ++i) words[i] = n * 100 + i;
@@ -125,7 +125,7 @@ TEST(Multiprocessor, GivesPackagesToTheUnitsThatAskedAndMixesNoRays) {
     }
     ASSERT_TRUE(fixture.chip.run());
     ASSERT_EQ(fixture.chip.requests.size(), packages);
-    // Every ray is a package as it was given: its words belong together, and each came once.
+    // Every ray is a package as it was given: its words are all of one package, and each came once.
     std::vector<uint32_t> seen;
     for (const Ray& ray : fixture.chip.rays) {
       for (uint32_t i = 0; i < kRayWords; ++i) ASSERT_EQ(ray[i], ray[0] + i);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// rtl/compute/rp_pc_stack.v: the PC/RPC stack of one warp. An entry whose PC has reached its RPC
-// is finished; the first one never is. A PC that does not fit becomes the greatest, which is outside of every program.
+// rtl/compute/rp_pc_stack.v: the PC/RPC stack of one warp. An entry is finished when its PC has reached its RPC; the
+// first one never is. A PC that does not fit becomes the greatest, which is outside of every program.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/compute/rp_performance_counters.v: what is counted while a kernel runs. The numbers are those of namespace
-// counter. The RTL adds events one or two cycles later, which nobody sees while it is idle.
+// counter. The RTL adds events one or two cycles later, which does not show once it is idle.
 #pragma once
 
 #include <array>

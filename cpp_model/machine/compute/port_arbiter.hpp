@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// rtl/compute/rp_port_arbiter.v: a port that is shared package by package. In each cycle present() is told what the
-// requesters show and says what the port shows; clock() then is told what was transferred.
+// rtl/compute/rp_port_arbiter.v: a port that is shared package by package. In each cycle present() is given what the
+// requesters show and returns what the port shows; clock() then is given what was transferred.
 #pragma once
 
 #include <cstdint>

@@ -22,7 +22,7 @@ class PredicateFile {
   void write(uint32_t index, uint32_t data) {
     if (index != 0) predicates_[index] = data;
   }
-  /// Launched lanes whose guard holds.
+  /// Launched lanes with a guard that holds.
   uint32_t mask(uint32_t launched, uint32_t guard, bool guard_negated) const {
     return (guard_negated ? ~predicates_[guard] : predicates_[guard]) & launched;
   }

@@ -67,7 +67,7 @@ class RayAlu {
   }
   /// False if clock() would change nothing: it need not be called as long as no task, no import and no beat arrives.
   bool active() const { return next_.access | (next_.swaps != 0) | next_.import | next_.exports; }
-  uint32_t done() const { return uint32_t{q_.done} << q_.done_warp; }  ///< the warp whose task is done, as a bit
+  uint32_t done() const { return uint32_t{q_.done} << q_.done_warp; }  ///< the warp with a task that is done, as a bit
   bool wrote() const { return q_.trace; }                              ///< that task was an rst
   bool fault() const { return q_.fault; }
   uint32_t fault_warp() const { return q_.fault_warp; }
@@ -92,14 +92,14 @@ class RayAlu {
   const RayImport& import() const { return import_; }
   const RayExport& exports() const { return export_; }
 
-  /// `arriving`: the warp whose task arrives in this cycle, or -1; `import_start`: of the launch that is accepted in
-  /// it. Returns the warp whose rin, rout or rfb is executed at the end of this cycle, or -1.
+  /// `arriving`: the warp with a task that arrives in this cycle, or -1; `import_start`: of the launch that is accepted
+  /// in it. Returns the warp that executes its rin, rout or rfb at the end of this cycle, or -1.
   int clock(int arriving, ImportKind import_start, const UnitInputs& inputs);
 
  private:
   /// What the next clock() has to do.
   struct Plan {
-    uint32_t swaps = 0;  ///< warps whose rin, rout or rfb can be executed
+    uint32_t swaps = 0;  ///< warps that can execute their rin, rout or rfb
     bool access = false, import = false, exports = false;
   };
   void plan();

@@ -21,7 +21,7 @@ class RayImport {
     ImportKind request_kind = ImportKind::None;
     uint32_t threads = 0, requested = 0, received = 0, outstanding = 0;  ///< packages
     int beat = 0;
-    uint32_t full = 0;   ///< warps whose input slice has all its packages
+    uint32_t full = 0;   ///< warps with all packages in their input slice
     bool write = false;  ///< the beat that came in the cycle before is written, and the one that waited for it
     uint8_t write_set = 0;
     uint32_t write_thread = 0, write_word = 0;

@@ -11,7 +11,7 @@ namespace raypool {
 /// The sets' ports in one cycle.
 class RayMemory {
  public:
-  /// Who asks first has the port of the set.
+  /// The first to ask has the port of the set.
   bool grant(bool asks, uint8_t set) {
     const bool granted = asks && (taken_ >> set & 1) == 0;
     taken_ |= uint32_t{granted} << set;

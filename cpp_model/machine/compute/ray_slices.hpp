@@ -22,7 +22,7 @@ class RaySlices {
 
   /// A launch will import packages for `threads` threads; they go to warps in order once earlier launches have theirs.
   void expect_import(uint32_t threads);
-  /// The next package. One that nobody expects is an error of the caller: std::logic_error.
+  /// The next package. One that is not expected is an error of the caller: std::logic_error.
   void import_package(const Intersection& package);
   /// The next beat of one.
   void import_beat(const Beat& beat);

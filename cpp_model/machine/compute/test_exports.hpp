@@ -1,4 +1,4 @@
-// For tests: what a unit says of its exports (UnitOutputs::exports) beside what leaves at its ports.
+// For tests: what a unit reports of its exports (UnitOutputs::exports) beside what leaves at its ports.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,8 +28,8 @@ inline std::vector<uint64_t> exporting_program() {
 
 /// Runs `kernels` kernels of exporting_program() on a unit of its own, each when the one before has left (`alone`), or
 /// as soon as it is taken. Of one alone the count must be exact when it is done. Else it may contain packages of the
-/// next one; but when as many have left as it was, all packages of the kernel must have, which is all that whoever sees
-/// the ports alone can go by.
+/// next one; but when as many have left as it was, all packages of the kernel must have, which is all that the ports
+/// alone show.
 inline void expect_exports_counted(ComputeUnit& unit, TestChip& chip, const Configuration& configuration, bool alone,
                                    uint32_t kernels = 40) {
   const auto lanes = static_cast<uint32_t>(configuration.lanes),

@@ -113,7 +113,7 @@ inline BoxResult test_boxes(const BoxRay& ray, const BoxNode& node, uint32_t lim
   return result;
 }
 
-/// The pipe: a node a cycle while it moves, which it does unless a result is there that nobody takes.
+/// The pipe: a node a cycle while it moves, which it does unless a result is there and is not taken.
 class BoxPipe {
  public:
   static constexpr int kStages = 8;

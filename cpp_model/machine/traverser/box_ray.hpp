@@ -51,7 +51,7 @@ struct BoxRay {
     /// m, of `bits` bits, the first of them 1: 1/|direction| lies in m .. m + 1, x 2^exponent.
     uint32_t reciprocal = 0;
     int exponent = 0;
-    int padding = kNoPadding;  ///< boxes are met whose planes are nearer than 2^padding to those that are
+    int padding = kNoPadding;  ///< boxes are met with planes nearer than 2^padding to those of boxes that are
   };
   bool valid = false;  ///< false: it meets no box, and nothing else is set
   int bits = 0;
@@ -59,7 +59,7 @@ struct BoxRay {
   uint32_t limit = 0;  ///< a key
 
   /// A direction that is all zero, a component of origin or direction that is infinite or NaN, and a limit that is NaN
-  /// or not above zero meet nothing, as everywhere (scene/traversal.hpp). Subnormal numbers are what they say.
+  /// or not above zero meet nothing, as everywhere (scene/traversal.hpp). Subnormal numbers keep their values.
   BoxRay(const float (&origin)[3], const float (&direction)[3], float ray_limit, int significand_bits)
       : bits(significand_bits) {
     bool finite = true, moves = false;

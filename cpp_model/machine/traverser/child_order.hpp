@@ -18,7 +18,7 @@ inline void order_children(const BoxResult& boxes, const uint32_t* references, L
   int64_t entries[kBoxes];  // of one that is not met before all others
   for (uint32_t box = 0; box < kBoxes; ++box)
     entries[box] = int64_t{boxes.entry[box]} | (int64_t{boxes.met >> box & 1} - 1);
-  // Whether a child is met nobody can predict: one that is not is put behind all.
+  // Whether a child is met cannot be predicted: one that is not is put behind all.
   LaneStacks::Entry ordered[2 * kBoxes];  // the furthest first
   for (uint32_t box = 0; box < kBoxes; ++box) {
     uint32_t further = 0;  // children

@@ -55,7 +55,7 @@ class LaneHits {
   explicit LaneHits(const std::vector<LaneRay>& rays) : rays_(&rays), hits_(rays.size()) {}
 
   const Hit& best(uint32_t slot) const { return hits_[slot]; }
-  /// What a test of this ray is told, when in the same cycle this result is there, or none (null).
+  /// What a test of this ray is given, when in the same cycle this result is there, or none (null).
   TrianglePipe::Best told(uint32_t slot, const Result* result) const {
     if (result != nullptr && result->hit && result->tag.slot == slot) return {result->t, result->number};
     return hits_[slot].hit ? TrianglePipe::Best{hits_[slot].t, hits_[slot].number} : TrianglePipe::Best{INFINITY, 0};
@@ -66,7 +66,7 @@ class LaneHits {
     return hits_[slot].hit ? ray.box.key(hits_[slot].t, ray.limit.scale) : ray.box.limit;
   }
   bool leaf_valid() const { return ends_.has_value(); }
-  /// A leaf all of whose triangles have results, the last of which came in the cycle before; `bits`: of keys.
+  /// A leaf with results for all its triangles, the last of which came in the cycle before; `bits`: of keys.
   std::optional<LaneStacks::LeafResult> leaf(int bits) const {
     if (!ends_) return {};
     const bool hit = hits_[*ends_].hit;
@@ -87,7 +87,7 @@ class LaneHits {
  private:
   const std::vector<LaneRay>* rays_;
   std::vector<Hit> hits_;         // [slot]
-  std::optional<uint32_t> ends_;  // whose leaf's last triangle had its result in the cycle before
+  std::optional<uint32_t> ends_;  // slot with a leaf that had its last triangle's result in the cycle before
 };
 
 }  // namespace raypool

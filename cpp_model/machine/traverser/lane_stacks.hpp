@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_lane_stacks.v: the stacks of a lane of the traverser. Of each slot's ray the youngest entries, and
-// how many blocks of four older ones are in the memory; who waits for an entry, for room or for a block; and what goes
-// to the memory.
+// how many blocks of four older ones are in the memory; the slots that wait for an entry, for room or for a block; and
+// what goes to the memory.
 //
-// Request and fill_waits() hold in a whole cycle. clock() is given what comes in the cycle, and says what else leaves
-// it.
+// Request and fill_waits() hold in a whole cycle. clock() is given what comes in the cycle, and returns what else
+// leaves it.
 #pragma once
 
 #include <algorithm>
@@ -65,10 +65,10 @@ class LaneStacks {
     Block entries;  ///< of one that writes
   };
   struct Work {
-    uint32_t deepest = 0;                                        ///< entries of a slot, those in the memory too
-    uint64_t spilled = 0, fetched = 0;                           ///< blocks
-    uint64_t dropped = 0;                                        ///< entries that lay behind the limit
-    std::array<uint64_t, 2> popped{};                            ///< who wanted an entry, after nodes and after leaves
+    uint32_t deepest = 0;               ///< entries of a slot, those in the memory too
+    uint64_t spilled = 0, fetched = 0;  ///< blocks
+    uint64_t dropped = 0;               ///< entries that lay behind the limit
+    std::array<uint64_t, 2> popped{};   ///< slots that wanted an entry, after nodes and after leaves
     uint64_t late_fills = 0, late_retries = 0, late_spills = 0;  ///< cycles that one has waited
   };
 
@@ -92,7 +92,7 @@ class LaneStacks {
     return (read_.kind == Read::Kind::Nothing) & (waiting == 0) & !(fetches | retry_ | fill_waits_);
   }
 
-  /// A cycle; what it says stays until the next one.
+  /// A cycle; what it returns stays until the next one.
   const Outcome& clock(const Inputs& inputs) {
     Outcome& now = outcome_;
     now.node_goes_on = now.next = now.done = false;
@@ -205,7 +205,7 @@ class LaneStacks {
     --stacks_[slot].here;
   }
 
-  // A block that has come, a stack that spills, or who wants an entry.
+  // A block that has come, a stack that spills, or a slot that wants an entry.
   void next_read(Outcome& now) {
     if (retry_) {
       retry_ = false;
@@ -275,7 +275,7 @@ class LaneStacks {
   Read read_;
   Outcome outcome_;
   bool pushed_ = false;  // in this cycle
-  Pop fetch_;            // whose block is asked for, or has come
+  Pop fetch_;            // has asked for a block, or got it
   bool fetching_ = false, retry_ = false;
   Block fill_{};
   bool fill_waits_ = false;

@@ -21,13 +21,13 @@
 
 namespace raypool {
 
-/// Cycles are counted by who holds it.
+/// Its owner counts the cycles.
 class LeafReader {
  public:
   static constexpr uint32_t kTriangleWords = 11;
   static constexpr uint32_t kLines = 5;                  ///< that it holds, and that are on their way
-  static constexpr uint32_t kLastLine = (1u << 26) - 1;  ///< a place whose line has no number has this one
-  static constexpr uint32_t kAhead = 4;  ///< leaves whose lines will be wanted; further ones are forgotten
+  static constexpr uint32_t kLastLine = (1u << 26) - 1;  ///< line of a place that lies beyond all lines
+  static constexpr uint32_t kAhead = 4;  ///< leaves with lines that will be wanted; further ones are forgotten
 
   static constexpr size_t kSources = 2;  ///< of starts: nodes; stacks, and a ray's first leaf
 

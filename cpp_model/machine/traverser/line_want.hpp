@@ -8,7 +8,7 @@
 
 namespace raypool {
 
-/// For the ray of a slot, or for nobody yet: it will be wanted.
+/// For the ray of a slot, or (`nobody`) a prefetch: it will be wanted.
 struct LineWant {
   bool valid = false, nobody = false;
   uint8_t slot = 0;

@@ -83,7 +83,7 @@ class RayExit {
 
   void set_frame(const Frame& frame) { frame_ = frame; }
 
-  /// Whose of these lanes' rays is taken, if one can be.
+  /// The lane that has its ray taken, if one can be.
   std::optional<uint32_t> choose(uint32_t done) const {
     if (done == 0 || (fate_ && !fate_moves())) return {};
     return done_turn_.choose(done);
@@ -182,7 +182,7 @@ class RayExit {
     return !finishes() || entries_.valid();
   }
 
-  // What has been computed of a hit waits as a package; the next hit whose triangle is there is begun.
+  // What has been computed of a hit waits as a package; the next hit that has its triangle is begun.
   void finish(LeafReader::Inputs& reader) {
     if (const RayFinishPipe::Result* const result = pipe_.result()) {
       const auto place = static_cast<uint32_t>(result->tag >> 1);
@@ -267,7 +267,7 @@ class RayExit {
   RoundRobin done_turn_;
   std::optional<Done> fate_;  // what becomes of it is decided
 
-  FreeList entries_;       // of hits whose triangle is read
+  FreeList entries_;       // of hits that have their triangle read
   std::vector<Hit> hits_;  // [entry]
   uint64_t cycle_ = 0;
   LeafReader reader_;

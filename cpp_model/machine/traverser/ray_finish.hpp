@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_ray_finish.v: what a ray carries on of its hit, once it is known which triangle it has hit and when:
 // the time, where in the triangle, and the triangle's normal; without double.
-// docs/machine/ray-finish.md defines them, and says why they are so.
+// docs/machine/ray-finish.md defines them, and explains why.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_ray_setup.v: what is computed once of a ray, for box_pipe.hpp and triangle_pipe.hpp, in integers and
-// in floats of which every operation is rounded once, to nearest even. docs/machine/ray-setup.md says why that is all.
+// in floats of which every operation is rounded once, to nearest even. docs/machine/ray-setup.md shows why that is all.
 #pragma once
 
 #include <algorithm>

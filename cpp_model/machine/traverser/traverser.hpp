@@ -62,7 +62,7 @@ class Traverser {
     uint8_t response_beat = 0;  ///< 0 .. 3 within the line
     Beat response_data{};
   };
-  /// What belongs to a valid means something only while it is set.
+  /// What goes with a valid means something only while it is set.
   struct Outputs {
     bool ray_ready = false;
     bool free_valid = false, free_shadow = false;
@@ -209,7 +209,7 @@ class Traverser {
   }
 
  private:
-  /// A cache, its lines, and what it is asked and told in a cycle.
+  /// A cache, its lines, and its requests and answers in a cycle.
   struct Cache {
     explicit Cache(const TreeBanks::Sizes& sizes) : banks(sizes), lines(sizes.lines) {}
 
@@ -231,7 +231,7 @@ class Traverser {
     TreeBanks banks;
     std::vector<TreeLine> lines;  // [row]
     TreeBanks::AllWants wants{};
-    uint32_t fill = TreeBanks::kNone;  // request whose line comes
+    uint32_t fill = TreeBanks::kNone;  // request that gets its line
     bool request_taken = false;
   };
   /// A ray that is set up.
@@ -281,7 +281,7 @@ class Traverser {
     if (exit_inputs_.set != nullptr) handed_.set = {exit_inputs_.set_slot, set_, entered_};
   }
 
-  /// The end of a cycle of the lanes, kind by kind: which lanes have something to do nobody can predict, but of each
+  /// The end of a cycle of the lanes, kind by kind: which lanes have something to do cannot be predicted, but of each
   /// kind few have.
   void clock_lanes() {
     const auto each = [this](uint32_t lanes, const auto& happens) {
@@ -318,7 +318,7 @@ class Traverser {
     ++with_.cycle;
   }
 
-  // The line that has come is offered to who has asked for it. True: it is taken.
+  // The line that has come is offered to its requester. True: it is taken.
   bool fill() {
     filled_lane_ = kNone;
     const std::optional<TreePort::Line>& line = port_.line();
@@ -478,7 +478,7 @@ class Traverser {
   TraverserLane::Sets with_;
   std::vector<std::unique_ptr<TraverserLane>> lanes_;
   std::vector<TriangleGroup> groups_;
-  std::array<uint32_t, 64> tests_end_{};  // [cycle] in turn: groups one of whose tests has its result in it
+  std::array<uint32_t, 64> tests_end_{};  // [cycle] in turn: groups with a test that has its result in it
   static_assert(TriangleGroup::kStages < 64);
   Cache nodes_, leaves_;
   TreePort port_;

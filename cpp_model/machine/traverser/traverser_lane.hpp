@@ -60,8 +60,8 @@ class TraverserLane {
   static constexpr uint32_t kNoReference = UINT32_MAX;
   static constexpr uint32_t kLeaf = 1u << 31;  ///< of a reference: it is a leaf's
 
-  /// Signals and events of the lanes: sets of lanes, a bit each, so that whoever clocks them goes through
-  /// those few of which something comes, kind by kind. Of a set that is said the bits hold in a whole cycle.
+  /// Signals and events of the lanes: sets of lanes, a bit each, so that the code that clocks them goes through those
+  /// few of which something comes, kind by kind. Of a set that is said the bits hold in a whole cycle.
   struct Sets {
     uint64_t cycle = 0;
     uint32_t test = 0, request = 0, done = 0, slot = 0, fault = 0, nodes = 0, leaves = 0, leaf_room = 0;  ///< said
@@ -76,7 +76,7 @@ class TraverserLane {
 
     uint32_t& offers_in(uint32_t cycles) { return offers_at[(cycle + cycles) % kCycles]; }
     uint32_t& reads_in(uint32_t cycles) { return reads_at[(cycle + cycles) % kCycles]; }
-    /// Lanes whose boxes have had their test begun so many cycles ago.
+    /// Lanes that began the test of their boxes so many cycles ago.
     uint32_t given_ago(uint32_t cycles) const { return given_at[(cycle - cycles) % kCycles]; }
     /// Those that go on by themselves, each kind in its turn.
     uint32_t to_offer() { return offers | std::exchange(offers_in(0), 0); }
@@ -294,7 +294,7 @@ class TraverserLane {
     return (sets_->stacked & bit_) != 0 ? stacks_.outcome() : LaneStacks::Outcome{};
   }
   std::optional<LaneStacks::LeafResult> leaf_result() const { return hits_.leaf(box_bits_); }
-  /// Of which a slot is given a line in this cycle, whose boxes are tested in it.
+  /// The slot that is given a line in this cycle; the test of its boxes begins in it.
   std::optional<uint32_t> given_slot() const {
     return (sets_->given & bit_) != 0 ? std::optional(given_slot_) : std::nullopt;
   }
@@ -319,8 +319,8 @@ class TraverserLane {
   void set(uint32_t& of, bool valid) const { of ^= ((0u - uint32_t{valid}) ^ of) & bit_; }
   bool tested(uint32_t ago) const { return (sets_->given_ago(ago) & bit_) != 0; }
 
-  // The node whose test begins. A way back to a node has a step to a number that is not above the one before it; ways
-  // that meet again, and stacks that come back wrong, lead to more visits than there are nodes.
+  // The node that begins its test. A way back to a node has a step to a number that is not above the one before it;
+  // ways that meet again, and stacks that come back wrong, lead to more visits than there are nodes.
   void look_at_node(const BoxNode& node, const uint32_t* references) {
     const uint32_t line = numbers_[given_slot_];
     const bool late = visits_[given_slot_]++ == count_;
@@ -360,18 +360,18 @@ class TraverserLane {
   std::vector<uint32_t> numbers_, visits_;  // [slot] of the node that was looked up; of nodes that have come
   TreeFault fault_, next_fault_;
   std::vector<LaneRay> rays_;  // [slot]
-  RamQueue<uint32_t> begins_;  // slots whose ray has come
+  RamQueue<uint32_t> begins_;  // slots that have their ray
 
   std::array<LateQueue<LineWant>, 2> nodes_;  // that are wanted: from box results; from the stack, and roots
-  uint32_t node_turn_ = 0;                    // whose head comes next
+  uint32_t node_turn_ = 0;                    // the queue that comes next
   LineOffers node_offers_;
-  uint32_t given_slot_ = 0;                   // whose node came last
+  uint32_t given_slot_ = 0;                   // the slot that was given a node last
   std::array<Tested, Sets::kCycles> tested_;  // [cycle] in turn
   static_assert(kNode + 1 < Sets::kCycles);
 
   LaneStacks stacks_;
   LeafReader leaves_;
-  RamQueue<uint32_t> ends_;       // slots whose ray is done
+  RamQueue<uint32_t> ends_;       // slots with a finished ray
   std::optional<uint32_t> done_;  // that is offered
   LaneHits hits_;
   uint64_t node_tests_ = 0;

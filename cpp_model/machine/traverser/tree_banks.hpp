@@ -65,7 +65,7 @@ class TreeBanks {
     return lanes;
   }
   /// A cycle's decisions: of what each lane of `wanting` wants, others want nothing; of the lanes that would take a
-  /// line for which they have waited; and of the request whose line comes (kNone: none).
+  /// line for which they have waited; and of the request that gets its line (kNone: none).
   void choose(const AllWants& wants, uint32_t wanting, uint32_t room, uint32_t fill) {
     uint32_t filled = 0;
     if (fill != kNone) {
@@ -190,7 +190,8 @@ class TreeBanks {
   }
 
   // Each bank chooses a lane, and the first of its wants that go to the bank; then a lane takes the first of its wants
-  // whose line a bank has chosen, for whomever. A bank whose lane takes another one may have chosen for nobody.
+  // with a line that a bank has chosen, for whichever lane. A bank looks up nothing if its lane takes another one and
+  // no lane takes its line.
   void look_up(const AllWants& wants, uint32_t wanting, uint32_t ready) {
     taken_lanes_ = 0;
     uint32_t asked = 0;
@@ -259,8 +260,8 @@ class TreeBanks {
   std::vector<TreeCache> banks_;
   std::vector<TreeCache::Inputs> inputs_;   // [bank] of this cycle
   std::vector<TreeCache::Lookup> lookups_;  // [bank]
-  std::vector<RoundRobin> lane_turns_;      // [bank] whose wants
-  std::vector<RoundRobin> bank_turns_;      // [lane] whose line that it has waited for
+  std::vector<RoundRobin> lane_turns_;      // [bank] the lane to choose
+  std::vector<RoundRobin> bank_turns_;      // [lane] the bank that offers a line that it has waited for
   RoundRobin request_turn_;
   uint32_t offering_ = 0, requesting_ = 0;     // banks
   std::array<uint32_t, kMostBanks> asking_{};  // lanes; 0 but during look_up()

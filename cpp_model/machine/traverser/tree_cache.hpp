@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_tree_cache.v: a bank of a cache of the traverser. Tags, registers of the lines that are on their way
-// (MSHRs), and who waits for them. Of the data it says in which row it stands: it moves as the tags do, and only
-// hardware needs it.
+// (MSHRs), and the slots that wait for them. Of the data it knows in which row it stands: it moves as the tags do, and
+// only hardware needs it.
 //
 // All that is said before clock() holds in a whole cycle, and depends on that cycle's inputs only where it takes them.
 #pragma once
@@ -27,7 +27,7 @@ class TreeCache {
     uint32_t mshrs = 8;
   };
   using Slots = std::array<uint8_t, kMostLanes>;  ///< [lane]
-  /// A line for all lanes that ask for it, with the slots of their rays; for none: nobody waits for it yet.
+  /// A line for all lanes that ask for it, with the slots of their rays; for none: a prefetch.
   struct Lookup {
     uint32_t line = 0;
     uint32_t lanes = 0;  ///< a bit each
@@ -38,7 +38,7 @@ class TreeCache {
     const Lookup* lookup = nullptr;  ///< taken; only if ready()
     bool fill = false;               ///< a line has come, for register `fill_id`
     uint32_t fill_id = 0;
-    bool offer_taken = false;    ///< by the lane to whom offer() is made
+    bool offer_taken = false;    ///< by the lane to which offer() is made
     bool request_taken = false;  ///< by the memory; only if request_valid()
   };
   /// What a lane is given.
@@ -68,12 +68,12 @@ class TreeCache {
 
   /// A lookup is taken, unless a line comes in this cycle. Whether the one before hits is not asked.
   bool ready() const {
-    return serving_ == Serving::Nobody && (filled_ & waited_for_) == 0 && !(looks_ && (waits_ || stuck()));
+    return serving_ == Serving::Idle && (filled_ & waited_for_) == 0 && !(looks_ && (waits_ || stuck()));
   }
-  /// Two cycles after a hit, or after an offer was taken: who gets the row that is there.
+  /// Two cycles after a hit, or after an offer was taken: the slots that get the row that is there.
   const Given& given() const { return given_; }
 
-  // ---- Who has waited
+  // ---- Serving those that have waited
 
   /// A lane is offered a line for which its ray has waited.
   bool offers() const { return serving_ == Serving::Offered; }
@@ -90,8 +90,7 @@ class TreeCache {
 
   /// True if nothing can happen until there are inputs.
   bool sleeps() const {
-    return looks_ == waits_ && (read_.lanes | given_.lanes | joins_.lanes | filled_) == 0 &&
-           serving_ == Serving::Nobody;
+    return looks_ == waits_ && (read_.lanes | given_.lanes | joins_.lanes | filled_) == 0 && serving_ == Serving::Idle;
   }
   /// True if nothing is under way either.
   bool idle() const { return sleeps() && !looks_ && busy_ == 0; }
@@ -173,7 +172,7 @@ class TreeCache {
       touch(in, found);
       return kNone;
     }
-    uint32_t used = 0;  // ways whose line somebody waits for, or is about to get
+    uint32_t used = 0;  // ways with a line that a lane waits for, or is about to get
     const auto uses = [&](uint32_t of) { used |= of / sizes_.ways == in ? 1u << of % sizes_.ways : 0; };
     for (uint32_t bits = busy_; bits != 0; bits &= bits - 1) {
       const uint32_t id = lowest(bits);
@@ -198,7 +197,7 @@ class TreeCache {
   const Work& work() const { return work_; }
 
  private:
-  enum class Serving : uint8_t { Nobody, Chosen, Offered };
+  enum class Serving : uint8_t { Idle, Chosen, Offered };
 
   struct Waiter {
     uint8_t lane = 0, slot = 0;
@@ -206,7 +205,7 @@ class TreeCache {
   };
   struct Mshr {
     uint32_t line = 0, way = 0;
-    Waiter head, tail;  // who waits longest, and shortest
+    Waiter head, tail;  // of the list: longest and shortest wait
   };
   // What a lookup comes to if it is a miss.
   struct Miss {
@@ -269,7 +268,7 @@ class TreeCache {
     }
     const uint32_t free = ~busy_ & static_cast<uint32_t>((uint64_t{1} << sizes_.mshrs) - 1);
     const bool room = free != 0 && locked != all_ways_;
-    now.stuck = lookup_.lanes != 0 && (others_join() || !(now.known || room));  // what nobody waits for is dropped
+    now.stuck = lookup_.lanes != 0 && (others_join() || !(now.known || room));  // a prefetch is dropped
     now.allocate = !now.stuck && !now.known && room;
     if (!now.allocate) return now;
     now.id = lowest(free);
@@ -277,7 +276,7 @@ class TreeCache {
     return now;
   }
 
-  // A tree of bits, of which each says in which half a way was used less recently; ways that are promised are left out.
+  // A tree of bits, each of which points to the half that was used less recently; ways that are promised are left out.
   uint32_t victim(uint32_t in, uint32_t locked) const {
     uint32_t node = 1;
     for (uint32_t half = sizes_.ways / 2; half != 0; half /= 2) {
@@ -316,7 +315,7 @@ class TreeCache {
   // Of the registers that are as they were before this cycle.
   void serve(bool joins, bool offer_taken) {
     const uint32_t served = filled_ & waited_for_;
-    if (serving_ == Serving::Nobody) {
+    if (serving_ == Serving::Idle) {
       if (served != 0) {
         serve_id_ = turn_.choose(served);
         turn_.advance(serve_id_);
@@ -336,7 +335,7 @@ class TreeCache {
     read_.row = fill_row(serve_id_);
     if (mshr.head == mshr.tail) {
       waited_for_ &= ~(1u << serve_id_);
-      serving_ = Serving::Nobody;
+      serving_ = Serving::Idle;
     } else {
       const uint32_t waiter = next(mshr.head);
       mshr.head = {static_cast<uint8_t>(waiter >> 8), static_cast<uint8_t>(waiter)};
@@ -351,16 +350,16 @@ class TreeCache {
   std::array<Touch, kMostWays> touches_{};  // [way]
   bool looks_ = false;
   bool waits_ = false;                               // what is looked up is stuck until a register is free
-  Lookup lookup_;                                    // whose tags have been read
+  Lookup lookup_;                                    // its tags have been read
   bool fresh_ = false;                               // they have, in the cycle before: later they may be out of date
   uint32_t found_ = kNone;                           // way in which the line was
   Joins joins_;                                      // of a lookup that has missed
   uint32_t busy_ = 0, filled_ = 0, waited_for_ = 0;  // sets of registers
   std::array<Mshr, kMostMshrs> mshrs_{};             //
-  std::vector<uint32_t> next_;                       // [waiter] who waits behind it
-  std::array<uint8_t, kMostMshrs> requests_{};       // registers whose line is to be asked for
+  std::vector<uint32_t> next_;                       // [waiter] the one behind it
+  std::array<uint8_t, kMostMshrs> requests_{};       // registers with a line to be asked for
   uint32_t request_head_ = 0, request_count_ = 0;
-  Serving serving_ = Serving::Nobody;
+  Serving serving_ = Serving::Idle;
   uint32_t serve_id_ = 0;
   RoundRobin turn_;
   Given read_, given_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Why rtl/traverser/rp_traverser.v has stopped: what its memory holds is no tree. Sticky, the first one.
+// Why rtl/traverser/rp_traverser.v has stopped: its memory holds a malformed tree. Sticky, the first one.
 #pragma once
 
 #include <cstdint>

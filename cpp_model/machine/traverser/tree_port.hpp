@@ -3,8 +3,8 @@
 // rtl/traverser/rp_tree_port.v: the traverser's side of its memory: requests of nodes, triangles and stacks in
 // rotation, and lines that come back in the order of the reads. What lies beyond the tree is a fault.
 //
-// request(), fault() and line() hold in a whole cycle. choose() says whose request is taken in it, then clock() ends
-// it.
+// request(), fault() and line() hold in a whole cycle. choose() returns the source of the request that is taken in it,
+// then clock() ends it.
 #pragma once
 
 #include <algorithm>
@@ -69,8 +69,8 @@ class TreePort {
   uint64_t lines_read() const { return lines_read_; }
   uint64_t blocks_written() const { return blocks_written_; }
 
-  /// Of those who ask, lanes with a bit each: whose request is taken over, if there is room for one. `stop`: of none,
-  /// from the cycle after a fault on.
+  /// Of those that ask, lanes with a bit each, the source of the request that is taken over, if there is room for one.
+  /// `stop`: none, from the cycle after a fault on.
   std::optional<Source> choose(bool request_taken, bool nodes, bool triangles, uint32_t stacks, bool stop) {
     const uint32_t asking = (nodes ? 1u : 0u) | (triangles ? 2u : 0u) | (stacks != 0 ? 4u : 0u);
     if ((request_ && !request_taken) || fault_.valid || stop || asking == 0) return {};
@@ -82,9 +82,9 @@ class TreePort {
     }
     return static_cast<Source>(chosen);
   }
-  uint32_t lane() const { return lane_; }  ///< whose stack's request has been chosen
+  uint32_t lane() const { return lane_; }  ///< with the stack's request that has been chosen
 
-  /// The end of a cycle. `asked`: null, nobody has been chosen. A line is taken before the last beat of the next one.
+  /// The end of a cycle. `asked`: null, none has been chosen. A line is taken before the last beat of the next one.
   void clock(bool request_taken, const Asked* asked, bool line_taken, const Beat* beat) {
     if (request_taken) request_.reset();
     if (line_taken) line_.reset();

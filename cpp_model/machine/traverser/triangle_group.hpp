@@ -30,7 +30,7 @@ class TriangleGroup {
   /// Cycles from a test to its result.
   static constexpr uint32_t kStages = TrianglePipe::stages(kBits);
 
-  /// A cycle's decision: whose test begins, of lanes of which one at least has one.
+  /// A cycle's decision: the lane that begins its test, of lanes of which one at least has one.
   uint32_t choose(uint32_t asking) {
     const uint32_t members = asking & members_, taken = turn_.choose(members);
     turn_.advance(taken);

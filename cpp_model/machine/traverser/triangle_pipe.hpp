@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_triangle_pipe.v: whether and where a ray hits a triangle, from the triangle's plane, without double.
-// docs/machine/triangle-test.md says why it is so.
+// docs/machine/triangle-test.md explains why.
 #pragma once
 
 #include <cmath>
@@ -88,7 +88,7 @@ struct TriangleResult {
 /// The pipe: it begins a test a cycle, and never waits.
 class TrianglePipe {
  public:
-  /// What a ray says to a test that asks.
+  /// What a ray answers a test that asks.
   struct Limit {
     float limit;  ///< the ray's
     int scale;    ///< its t is internal t x 2^scale
@@ -105,7 +105,8 @@ class TrianglePipe {
   static constexpr uint32_t stages(uint32_t bits) { return 30 + bits / 2; }
   int stages() const { return static_cast<int>(stages_); }
 
-  /// A test asks for the limit, or the best hit, of the ray with this tag, or is told it; a result is there. Else null.
+  /// A test asks for the limit, or the best hit, of the ray with this tag, or is given it; a result is there. Else
+  /// null.
   const TriangleResult* asks_limit() const { return tests_.at(stages_ - 5); }
   const TriangleResult* told_limit() const { return tests_.at(stages_ - 4); }
   const TriangleResult* asks_best() const { return tests_.at(stages_ - 2); }
@@ -118,7 +119,7 @@ class TrianglePipe {
     begun = {tag, triangle.number, false, 0};
     begun.hit = meets_triangle(narrow_, ray, triangle, begun.t);
   }
-  /// The end of a cycle. `limit`, `best`: of the tests that are told them.
+  /// The end of a cycle. `limit`, `best`: of the tests that are given them.
   void clock(const Limit& limit, const Best& best) {
     if (TriangleResult* const limited = tests_.at(stages_ - 4))
       limited->hit = limited->hit && is_within(*limited, limit);
@@ -127,7 +128,7 @@ class TrianglePipe {
     tests_.clock();
   }
 
-  // ---- Where what a test is told is known: its limit as it begins, its best hit once its result is there
+  // ---- Where what a test is given is known: its limit as it begins, its best hit once its result is there
 
   void begin(const TriangleRay& ray, const Triangle& triangle, uint64_t tag, const Limit& limit) {
     begin(ray, triangle, tag);

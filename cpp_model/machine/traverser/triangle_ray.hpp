@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// A triangle, and what the set-up of a ray computes once for its tests; scene/prepared_ray.cpp says how.
+// A triangle, and what the set-up of a ray computes once for its tests; scene/prepared_ray.cpp shows how.
 #pragma once
 
 #include <cstdint>

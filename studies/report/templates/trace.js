@@ -97,7 +97,7 @@
     const closer = (factor, at) => look(at - (at - first) * factor, cycles * factor);
 
     const plural = (count, word) => count + " " + word + (count === 1 ? "" : "s");
-    const tell = (offsetX, offsetY) => {
+    const text_at = (offsetX, offsetY) => {
       const track = trace.tracks[Math.floor((offsetY - HEAD) / ROW)];
       const cycle = first + (offsetX - LEFT) / (width - LEFT) * cycles;
       if (!track || offsetX < LEFT) return "";
@@ -128,7 +128,7 @@
     canvas.addEventListener("pointerup", () => { held = null; });
     canvas.addEventListener("pointermove", (event) => {
       if (held) look(held.first - (event.offsetX - held.x) / (width - LEFT) * cycles, cycles);
-      under.textContent = tell(event.offsetX, event.offsetY) || "\u00a0";
+      under.textContent = text_at(event.offsetX, event.offsetY) || "\u00a0";
     });
     const doing = {
       in: () => closer(.5, first + cycles / 2), out: () => closer(2, first + cycles / 2),

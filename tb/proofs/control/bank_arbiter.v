@@ -2,9 +2,9 @@
 // @modules bank_arbiter
 // @proves of a lane one want is taken at most, one that it has, of a bank that is ready, and none of a silent lane
 // @proves a bank that is ready looks up a line if and only if a want of it is taken; all that are taken there are of
-//   this line, for just the lanes whose rays wait for it, with their slots
-// @proves whose first want is the line that its bank looks up takes it; whose second one is, takes it unless the first
-//   one is taken
+//   this line, for just the lanes with rays that wait for it, with their slots
+// @proves a lane takes its first want if its bank looks up that line; it takes its second one likewise, unless the
+//   first one is taken
 // @proves a first want that stays is taken when its bank has been ready LANES times at the latest, if its lane is not
 //   silent meanwhile
 // @parameters LANES=3 BANKS=2
@@ -21,7 +21,7 @@
 // @break bank_arbiter s/assign first_taken\[l\] = \|\(first & ready_i\)/assign first_taken[l] = |first/
 `default_nettype none
 module check #(parameter LANES = 3, BANKS = 2) (
-  input wire clk_i, input wire [2*LANES-1:0] valid_i, nobody_i, input wire [2*LANES*3-1:0] lines_i,
+  input wire clk_i, input wire [2*LANES-1:0] valid_i, prefetch_i, input wire [2*LANES*3-1:0] lines_i,
   input wire [2*LANES-1:0] slots_i, input wire [LANES-1:0] silent_i, input wire [BANKS-1:0] ready_i);
   localparam BANK_LINE_BITS = 3 - $clog2(BANKS);
   reg rst_n = 1'b0;
@@ -32,7 +32,7 @@ module check #(parameter LANES = 3, BANKS = 2) (
   wire [BANKS*LANES-1:0] lanes, slots;
   rp_bank_arbiter #(.LANES(LANES), .BANKS(BANKS), .LINE_BITS(3), .SLOT_BITS(1)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .want_valid_i(valid_i), .want_line_i(lines_i), .want_slot_i(slots_i),
-    .want_nobody_i(nobody_i), .silent_i(silent_i), .taken_o(taken), .valid_o(looks), .ready_i(ready_i),
+    .want_nobody_i(prefetch_i), .silent_i(silent_i), .taken_o(taken), .valid_o(looks), .ready_i(ready_i),
     .line_o(looked), .lanes_o(lanes), .slots_o(slots));
 
   // Anybody's want that stays the first one: what holds for any lane holds for all.
@@ -61,8 +61,8 @@ module check #(parameter LANES = 3, BANKS = 2) (
           if (taken[i]) begin
             some[b] = 1'b1;
             assert (valid_i[i] && !silent_i[l] && ready_i[b] && looks[b] && here == want);
-            assert (lanes[b*LANES+l] == !nobody_i[i]);
-            assert (nobody_i[i] || slots[b*LANES+l] == slots_i[i]);
+            assert (lanes[b*LANES+l] == !prefetch_i[i]);
+            assert (prefetch_i[i] || slots[b*LANES+l] == slots_i[i]);
           end else if (valid_i[i] && !silent_i[l] && ready_i[b] && looks[b] && here == want)
             assert (i == 2 * l + 1 && taken[2*l]);
         end

@@ -1,8 +1,8 @@
 // @modules block_scheduler round_robin
 // @proves a launch goes to exactly one unit, which can take it, and launch_unit_o names it; to one that runs
 //   no kernel if such a one can take it
-// @proves launch_ready_o says whether a unit can take it, whatever launch_valid_i is
-// @proves among equals nobody gets a second launch while another waits for its first: after UNITS - 1 others at most
+// @proves launch_ready_o is high if and only if a unit can take it, whatever launch_valid_i is
+// @proves among equals no unit gets a second launch while another waits for its first: after UNITS - 1 others at most
 // @parameters UNITS=4
 // @parameters UNITS=2
 // @break block_scheduler s/ready_i & ~busy_i/ready_i/

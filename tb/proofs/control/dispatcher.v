@@ -4,7 +4,7 @@
 // @modules dispatcher task_register alu_pipeline
 // @zeros
 // @proves a grant goes to a warp that wants, to one instance of its type, which is ready; no warp gets two
-// @proves the lowest warp wins the lowest instance; nobody waits beside a ready one; waiting_o shows those who wait
+// @proves the lowest warp wins the lowest instance; no warp waits beside a ready one; waiting_o shows those that wait
 // @proves with OVERLAP, of the warps that want a type those in first_i are served before all others; without it first_i
 //   changes nothing
 // @proves a task register holds of each operand that its type has what the warp that won offered, else zero

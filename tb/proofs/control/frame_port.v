@@ -3,7 +3,7 @@
 //   many as were before it; what is offered stays until it is taken
 // @proves whether a unit's is taken does not depend on the traverser; the traverser's is taken if there is room and no
 //   unit offers one; a frame buffer that takes one a cycle gets one a cycle
-// @proves whoever watches hears of each contribution of a unit once, in the cycle after it, and of no other one
+// @proves each contribution of a unit is reported once, in the cycle after it, and no other one
 // @break frame_port s/unit_valid_i \? \{unit_color_i/traverser_valid_i ? {unit_color_i/
 // @break frame_port s/room && !unit_valid_i/room/
 // @break frame_port s/unit_ready_o = room/unit_ready_o = room \&\& !traverser_valid_i/

@@ -1,6 +1,6 @@
 // @long 10
 // @modules free_list ram_queue ram_1r1w
-// @proves a number is offered if and only if one is free; it is below SIZE, and nobody has it
+// @proves a number is offered if and only if one is free; it is below SIZE, and not in use
 // @proves a number that has come back is offered again after SIZE - 1 others at most
 // @parameters SIZE=4
 // @parameters SIZE=3

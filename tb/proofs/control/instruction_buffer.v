@@ -6,8 +6,8 @@
 // @proves no instruction is issued while one is under way; each one fetched is issued once, with its PC,
 //   in order; it stays until it retires
 // @proves a triple's elements are read, offered and done in order, no element twice and none left out before it retires
-// @proves the next element is read only when the one before has its ALU, or, if elements wait for each other,
-//   when that is done; where the counter says that it is read at once, it is
+// @proves the next element is read only when the one before has its ALU, or, if elements wait for each other, when that
+//   is done; where the counter counts it as read at once, it is
 // @proves an instruction without a table row, or that its ALU lacks, is never issued; none that lies outside the
 //   program is fetched
 // @proves nothing is stepped while a control instruction is under way; nothing is stepped,

@@ -1,7 +1,7 @@
 // @modules launch_rules
 // @proves whatever is proposed, no more than HELD_LIMIT pixels are held
-// @proves whatever is proposed, shadow rays, those to come and shadow intersections that nobody was promised are at
-//   most C + P - 1: when the intersections fill their pool, a place of the ray pool is left
+// @proves whatever is proposed, shadow rays, those to come and shadow intersections that are not promised are at most C
+//   + P - 1: when the intersections fill their pool, a place of the ray pool is left
 // @proves when no pixel is held, a tile that is left may be cast
 // @proves without the remedy no more tiles than units are cast from one moment without held pixels to the next
 // @parameters WINDOW_REMEDY=0

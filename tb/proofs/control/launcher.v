@@ -1,5 +1,5 @@
 // Four warps of two lanes. A warp's active_i falls at any time, and rises in the cycle after its start alone. What the
-// launches carry besides their threads is told by their PC: the checker takes the block and blocks to be made of it.
+// launches carry besides their threads is marked by their PC: the checker takes the block and blocks to be made of it.
 // @modules launcher
 // @zeros
 // @proves a warp is started only while it is inactive, for the launch that began last, with its PC and lanes, and only

@@ -2,12 +2,12 @@
 // of the addresses, so that the memory sees them.
 // @long 50
 // @modules memory_port ram_queue ram_1r1w request_queue event_counter
-// @proves beats are handed on unchanged, in their order, to whom has asked for the line and with its id and their
-//   number, CYCLES_PER_BEAT cycles apart at least; no more than LINES lines are on their way
-// @proves nobody starves: while lines may be on their way, the next request is offered within 4 CYCLES_PER_BEAT cycles,
-//   and a beat that is there is handed on within CYCLES_PER_BEAT
+// @proves beats are handed on unchanged, in their order, to the requester of the line and with its id and their number,
+//   CYCLES_PER_BEAT cycles apart at least; no more than LINES lines are on their way
+// @proves no requester starves: while lines may be on their way, the next request is offered within 4 CYCLES_PER_BEAT
+//   cycles, and a beat that is there is handed on within CYCLES_PER_BEAT
 // @proves a unit is quiet if and only if none of its requests waits or is on its way, and the port is idle if and only
-//   if nobody's does
+//   if no request does
 // @parameters QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=2 LINES=1
 // @parameters QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=1 LINES=1
 // @break memory_port s/lines_left = lines_q != .*;/lines_left = 1'b1;/

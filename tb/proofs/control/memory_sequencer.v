@@ -1,8 +1,8 @@
 // Waiters and filled lines are anything; a warp has one task at a time, which is queued or starts at once, ends
 // its pass and then parks or is done.
 // @modules memory_sequencer
-// @proves only a warp that is queued or parked is chosen, once; none is lost: idle_o and
-//   queue_empty_o say that none is left
+// @proves only a warp that is queued or parked is chosen, once; none is lost: idle_o and queue_empty_o are high when
+//   none is left
 // @proves what is ready to start stays until it is taken; something is chosen whenever something may be
 // @proves at most one warp has the privilege, a loser; it has it no longer two cycles
 //   after it took a register or is no loser

@@ -3,8 +3,8 @@
 // @modules miss_status
 // @zeros
 // @proves a line has at most one register; a way of a set is promised once
-// @proves match_o, available_o, locked_o, freed_o and idle_o tell the truth; a register taken was
-//   free; a refill finds its line and way
+// @proves match_o, available_o, locked_o, freed_o and idle_o are right; a register taken was free; a refill finds its
+//   line and way
 // @proves any one warp that waits is a waiter of its register until it is served, and the register is busy so long
 // @parameters MSHRS=3 WARPS=2 MSHR_BITS=2
 // @parameters MSHRS=1 WARPS=2 MSHR_BITS=1

@@ -1,5 +1,5 @@
 // @modules
-// @proves of items the one whose bit is set is chosen, and its number; nothing is 0
+// @proves of items the one with its bit set is chosen, and its number; nothing is 0
 // @parameters COUNT=5
 // @parameters COUNT=1
 // @break onehot.vh s/name \| items\[item\*\(WIDTH\)/name | items[item/

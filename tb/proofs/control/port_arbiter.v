@@ -1,9 +1,9 @@
 // @modules port_arbiter round_robin
 // @proves a transfer at the port is that of exactly one requester, with its data
 // @proves what is offered stays until it is taken; packages are never mixed
-// @proves the port is not idle while somebody asks and no package is under way
-// @proves whoever keeps asking is served before anybody else is served twice, after
-//   COUNT - 1 packages of others at most
+// @proves the port is not idle while a requester asks and no package is under way
+// @proves a requester that keeps asking is served before any other is served twice, after COUNT - 1 packages of others
+//   at most
 // @parameters COUNT=4
 // @parameters COUNT=3
 // @parameters COUNT=2

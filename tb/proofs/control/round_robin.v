@@ -1,6 +1,6 @@
 // @modules round_robin
 // @proves chooses one requester if there is one, and only a requester
-// @proves whoever keeps asking is chosen before anybody else is chosen twice, so after COUNT - 1 others at most
+// @proves a requester that keeps asking is chosen before any other is chosen twice, so after COUNT - 1 others at most
 // @parameters COUNT=4
 // @parameters COUNT=7
 // @parameters COUNT=1

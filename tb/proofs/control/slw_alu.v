@@ -5,7 +5,7 @@
 // @zeros
 // @proves of a task each lane of the mask is done DEPTH cycles after the arrival, and as many more as there are further
 //   groups of lanes, with what the unit makes of its operands and its operation; so is its warp
-// @proves ready_o leaves each group a cycle of its own: tasks that come as soon as they may disturb nobody
+// @proves ready_o leaves each group a cycle of its own: tasks that come as soon as they may disturb no other
 // @parameters SLOW_LANES=1 DEPTH=7
 // @parameters SLOW_LANES=2 DEPTH=6
 // @parameters SLOW_LANES=4 DEPTH=7

@@ -4,12 +4,12 @@
 // @long 25
 // @modules tree_cache round_robin ram_queue ram_1r1w
 // @zeros
-// @proves whoever is given a line has asked for one, and it is that one, as the memory holds it; a line is asked for
-//   by one register at a time, and a register that is asked for is free; an offer stays until it is taken, and is to a
-//   lane that waits
-// @proves behind a reset nobody is given a line as the memory held it before
-// @proves nobody is forgotten: while the memory owes nothing and lanes take what they are offered, who has asked is
-//   given the line, and the cache takes lookups again, within 9 cycles
+// @proves a lane that is given a line has asked for one, and it is that one, as the memory holds it; a line is asked
+//   for by one register at a time, and a register that is asked for is free; an offer stays until it is taken, and is
+//   to a lane that waits
+// @proves behind a reset no lane is given a line as the memory held it before
+// @proves no lane is forgotten: while the memory owes nothing and lanes take what they are offered, a lane that has
+//   asked is given the line, and the cache takes lookups again, within 9 cycles
 // @break tree_cache s/set_valid\[w\] && tags/tags/
 // @break tree_cache s/if \(!rst_ni\) valid_q <= \{LINES\{1'b0\}\};/if (!rst_ni) valid_q <= valid_q;/
 // @break tree_cache s/if \(!rst_ni\) valid_q <= \{LINES\{1'b0\}\};/if (!rst_ni) valid_q <= valid_q \& 4'b1010;/
@@ -44,7 +44,7 @@ module check (
   wire [1:0] given, given_slots, offer_lane;
   wire [2:0] ask_line;
   wire offer_slot;
-  reg [1:0] owed_q = 0;                          // registers whose lines the memory owes
+  reg [1:0] owed_q = 0;                          // registers that the memory owes lines
   reg [2:0] line_q [0:1];
   rp_tree_cache #(.LANES(2), .SLOTS(1), .LINES(4), .WAYS(2), .MSHRS(2), .LINE_BITS(3), .DATA_BITS(1)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .valid_i(valid), .ready_o(ready), .line_i(line), .lanes_i(lanes), .slots_i(2'd0),

@@ -1,11 +1,12 @@
-// Whose request the traverser's port takes over, what it asks the memory for, and whose the lines are that come. Nodes
-// lie in lines 0 and 1, triangles in 2 to 4, stacks from 8 on; numbers of lines that the caches ask for may lie beyond.
+// The requests that the traverser's port takes over, what it asks the memory for, and the requesters of the lines that
+// come. Nodes lie in lines 0 and 1, triangles in 2 to 4, stacks from 8 on; numbers of lines that the caches ask for may
+// lie beyond.
 // @modules tree_port round_robin ram_queue ram_1r1w
-// @proves whoever is heard asked, alone; what is offered in the next cycle is that one's request, at its place, and
-//   stays until it is taken; what lies beyond the tree, and a stack's last block, is not offered but a fault, with its
-//   source and line; while a fault is told, and from stop_i on, nobody is heard
-// @proves nobody starves: a cache is passed by two others at most, a lane's stack by two before each lane's turn and
-//   its own; the port is not idle while somebody asks
+// @proves a requester that is heard has asked, alone; what is offered in the next cycle is that one's request, at its
+//   place, and stays until it is taken; what lies beyond the tree, and a stack's last block, is not offered but a
+//   fault, with its source and line; while a fault is reported, and from stop_i on, none is heard
+// @proves no requester starves: a cache is passed by two others at most, a lane's stack by two before each lane's turn
+//   and its own; the port is not idle while a requester asks
 // @proves each line is given once, unchanged and in order, to the cache or lane that asked for it, with its id, or the
 //   half of it that the block lies in, and stays until a cache takes it
 // @break tree_port /heard_turn/,/grant_o/ s/takes && grant\[2\]/takes/
@@ -64,7 +65,7 @@ module check (
     .request_data_o(data), .response_valid_i(beat_valid), .response_beat_i(beat_q),
     .response_data_i({63'd0, beat_bits[1], 63'd0, beat_bits[0]}));
 
-  // ---- Who is heard, and what that one asks for
+  // ---- The requester that is heard, and what it asks for
   wire [3:0] asks = {stack_valid, triangle_valid, node_valid};
   wire [3:0] heard = {stack_ready, triangle_ready, node_ready} & {4{rst_n}};
   wire lane = heard[3];
@@ -90,7 +91,7 @@ module check (
     end
   end
 
-  // ---- Whoever waits: how often others were heard meanwhile
+  // ---- Any requester that waits: how often others were heard meanwhile
   (* anyconst *) wire [1:0] waiter;
   reg [2:0] passed_q = 0;
   always @(posedge clk_i) passed_q <= (rst_n && asks[waiter] && !heard[waiter]) ? passed_q + (heard != 0) : 0;
@@ -105,7 +106,7 @@ module check (
     beat_q <= beat_q + beat_valid;
   end
 
-  // ---- Any one line: whose it is, how many come before it, what it is
+  // ---- Any one line: its requester, how many come before it, what it is
   reg chosen_q = 1'b0, given_q = 1'b0, own_half_q, own_lane_q, own_id_q;
   reg [1:0] own_source_q, before_q;
   reg [7:0] bits_q;

@@ -3,7 +3,7 @@
 // @slow
 // @proves a request at the memory port is that of exactly one unit, unchanged, its id grown by the unit's
 //   number, and stays until it is taken
-// @proves a request that stays is taken after UNITS - 1 others at most; the port is not idle while somebody asks
+// @proves a request that stays is taken after UNITS - 1 others at most; the port is not idle while a unit asks
 // @proves a response goes to the unit that its id names, and to no other
 // @parameters UNITS=2
 // @parameters UNITS=4

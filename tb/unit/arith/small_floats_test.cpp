@@ -145,7 +145,7 @@ TEST(SmallFloats, TheTreeMultipliesEveryPairOfElevenBitMantissas) {
   EXPECT_EQ(wrong, 0u);
 }
 
-/// The product of every pair of 16-bit numbers whose first one is below `end`.
+/// The product of every pair of 16-bit numbers with a first one below `end`.
 template <typename Top>
 std::array<LongCount, 2> multiply_every_pair(uint32_t end) {
   constexpr uint32_t kLanes = 16, kBits = 16, kSteps = 65536 / kLanes;

@@ -1,4 +1,4 @@
-// The machines whose controllers are compared with their class.
+// The machines with controllers that are compared with their class.
 #pragma once
 
 #include <gtest/gtest.h>

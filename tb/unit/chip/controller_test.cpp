@@ -1,6 +1,6 @@
-// The controller in Verilog against its class, all outputs in every cycle, while it draws frames on units, pools and a
-// traverser of chance: kernels that export as much as they may or less, in their order and mixed with those of the next
-// one, packages that wait in their unit, rays that are dropped. Every frame must come to its end.
+// The controller in Verilog against its class, all outputs in every cycle, while it draws frames on random units, pools
+// and a random traverser: kernels that export as much as they may or less, in their order and mixed with those of the
+// next one, packages that wait in their unit, rays that are dropped. Every frame must come to its end.
 #include "machine/chip/controller.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ struct RandomUnit {
   size_t running() const { return kernels.size() - waits; }
 };
 
-/// Pools, units and a traverser that do what they may, each when chance will have it.
+/// Pools, units and a traverser that do what they may, each at random times.
 class RandomChip {
  public:
   RandomChip(const ChipConfiguration& chip, uint32_t units, bool reflections, std::mt19937& random, uint32_t pace)
@@ -193,7 +193,7 @@ class RandomChip {
 struct Reached {
   uint64_t frames = 0, cycles = 0, eye = 0, secondary = 0, reflecting = 0, direct = 0, shade = 0, ahead = 0;
   uint64_t overlapped = 0, dropped = 0, late = 0, both = 0;
-  uint64_t wrapped = 0;  ///< times that a unit's count of exports began anew
+  uint64_t wrapped = 0;  ///< times that a unit's count of exports wrapped
 };
 
 /// Frames that the class draws on such a chip, one after the other.
@@ -230,7 +230,7 @@ struct Frame {
     if (launch.choice.kind == Choice::Kind::Eye) pixels += tiles.take(cycle).pixels;
     launch = {};
   }
-  void tell(uint64_t cycle, const RandomChip::Events& events) {
+  void report(uint64_t cycle, const RandomChip::Events& events) {
     if (events.ray) controller.ray_left(cycle, events.ray_unit, events.shadow);
     if (events.contribution) controller.contribution_left(cycle, events.contribution_unit);
     for (uint32_t unit = 0; unit < M::kUnits; ++unit)
@@ -274,7 +274,7 @@ class Bench {
     uint32_t width, height;
     bool reflections;
   };
-  /// Draws a frame. `pace`: each part of the chip does something once in so many cycles in the mean.
+  /// Draws a frame. `pace`: each part of the chip does something once in so many cycles on average.
   void draw(uint32_t width, uint32_t height, bool reflections, uint32_t pace) {
     draw({{width, height, reflections}}, pace);
   }
@@ -317,7 +317,7 @@ class Bench {
         count(frame.launch, !frame.chip.unit(unit).kernels.empty());
         frame.take_launch(cycle, unit);
       }
-      frame.tell(cycle, events);
+      frame.report(cycle, events);
       frame.decide(cycle, ready);
       ASSERT_NO_FATAL_FAILURE(frame.expect_rules());
       before = events;
@@ -463,7 +463,7 @@ TYPED_TEST(ControllerInVerilog, DrawsFrameAfterFrameWithoutAReset) {
 }
 
 // As many packages of each unit as it takes: the narrower the count the smaller the picture.
-TYPED_TEST(ControllerInVerilog, EndsAFrameInWhichTheCountsOfExportsBeginAnew) {
+TYPED_TEST(ControllerInVerilog, EndsAFrameInWhichTheCountsOfExportsWrap) {
   Bench<TypeParam> bench(4);
   const uint32_t side = TypeParam::kExportBits == 16 ? 240 : 60;
   ASSERT_NO_FATAL_FAILURE(bench.draw(side, side, true, 1));

@@ -24,7 +24,7 @@ namespace raypool::bench {
 namespace {
 
 /// Its numbers are those of the class: size, words, overhead, cycles per beat, pipelined, culling; and whether there
-/// are shadow packages, of which the class has none where nobody brings any.
+/// are shadow packages, of which the class has none where none are brought.
 template <typename Unit_, uint32_t kSize, uint32_t kWords_, uint32_t kOverhead, uint32_t kCyclesPerBeat,
           bool kPipelined, bool kCulling, bool kShadows>
 struct Pool {
@@ -224,7 +224,7 @@ class Bench {
   bool put_waits_ = false, request_waits_ = false, taken_ = false;
   std::deque<uint8_t> promised_;          // kinds, in the order in which they are asked for
   std::deque<Intersection> expected_[4];  // [kind] what is in the pool
-  std::deque<uint32_t> leaving_;          // units whose packages are to come
+  std::deque<uint32_t> leaving_;          // units that still await packages
 };
 
 template <typename P>

@@ -1,6 +1,6 @@
 // The memory port in Verilog against its class, all outputs in every cycle: device and traverser ask when they like,
-// the memory takes requests and answers when it likes. And against what the port says of a memory with a fixed latency,
-// in the few lines that need no more than the time at which requests come.
+// the memory takes requests and answers when it likes. And against what the port predicts for a memory with a fixed
+// latency, in the few lines that need no more than the time at which requests come.
 #include "machine/chip/memory_port.hpp"
 
 #include <gtest/gtest.h>
@@ -348,7 +348,7 @@ void add(Seen& to, const Seen& seen) {
   to.quiet_again += seen.quiet_again;
 }
 
-/// With a memory that answers after a fixed time it is what docs/machine/memory-port.md says, to the cycle.
+/// With a memory that answers after a fixed time it is what docs/machine/memory-port.md describes, to the cycle.
 TYPED_TEST(MemoryPortOfFixedLatency, HasTheCyclesOfTheChip) {
   using P = TypeParam;
   constexpr uint32_t kCycles = std::max(3000u, 60 * P::kLine);

@@ -129,7 +129,7 @@ class Bench {
       if (bench_.one_of(2)) ray_[word::kColor + bench_.random() % 3] = 1u << bench_.random() % 31;
     }
   }
-  // Who is inside the traverser leaves in any order.
+  // Rays leave the traverser in any order.
   void free_place(const Traffic& traffic) {
     u_.free_valid_i = !inside_.empty() && traffic.free != 0 && bench_.one_of(traffic.free);
     if (!u_.free_valid_i) return;

@@ -49,7 +49,7 @@ class Bench {
     u_.width_i = random();  // read at the start only
     u_.height_i = random();
   }
-  /// A tile that is offered stays for so many cycles in the mean; 1: it is taken at once.
+  /// A tile that is offered stays for so many cycles on average; 1: it is taken at once.
   void clock(uint32_t stall) {
     const bool ready = bench_.one_of(stall);
     ASSERT_NO_FATAL_FAILURE(compare(ready));

@@ -1,5 +1,5 @@
-// rtl/common/rp_event_counter.v against a sum: so narrow that it begins anew many times in a run, as one of 48 bits
-// never does in a simulation.
+// rtl/common/rp_event_counter.v against a sum: so narrow that it wraps many times in a run, as one of 48 bits never
+// does in a simulation.
 #include <gtest/gtest.h>
 #include <verilated.h>
 
@@ -22,7 +22,7 @@ struct Counter {
 template <typename C>
 class EventCounter : public testing::Test {
  protected:
-  /// Counts events of chance, one in `pace` cycles in the mean. Each cycle is checked; returns the sum.
+  /// Counts random events, one in `pace` cycles on average. Each cycle is checked; returns the sum.
   uint64_t count(Clocked<typename C::Unit>& bench, uint32_t cycles, uint32_t pace) {
     auto& u = *bench.u;
     uint64_t sum = 0;
@@ -49,11 +49,11 @@ using Counters =
                    Counter<Vevent_counter_7_3_1_1, 7, 1, true>, Counter<Vevent_counter_13_12_6_0, 13, 6, false>>;
 TYPED_TEST_SUITE(EventCounter, Counters);
 
-TYPED_TEST(EventCounter, BeginsAnewAtItsEnd) {
+TYPED_TEST(EventCounter, WrapsAtItsEnd) {
   for (const uint32_t pace : {1u, 2u, 9u}) {
     Clocked<typename TypeParam::Unit> bench(pace);
     const uint64_t sum = this->count(bench, 60000, pace);
-    EXPECT_GT(sum >> TypeParam::kBits, 10u) << "it has hardly begun anew";
+    EXPECT_GT(sum >> TypeParam::kBits, 10u) << "it has hardly wrapped";
   }
 }
 

@@ -30,8 +30,8 @@ class LineMemory {
     std::array<uint32_t, 4> data{};
   };
 
-  /// There are words at all addresses, each of which holds another value at first; bytes() says how many are meant to
-  /// be used.
+  /// There are words at all addresses, each of which holds another value at first; bytes() is how many are meant to be
+  /// used.
   LineMemory(size_t words, uint32_t seed) : bytes_(static_cast<uint32_t>(words * 4)), random_(seed) {}
 
   MemoryBehaviour behaviour;

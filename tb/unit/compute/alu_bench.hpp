@@ -34,7 +34,7 @@ struct AluUnderTest {
   uint32_t latency = 1;
 };
 
-/// The lanes of a task whose results are looked at, of a unit of this mode.
+/// The lanes of a task that have their results looked at, of a unit of this mode.
 using ComparedFunction = uint32_t (*)(Opcode opcode, uint32_t mask, arith::Mode mode);
 inline uint32_t lanes_of_mask(Opcode, uint32_t mask, arith::Mode) { return mask; }
 
@@ -120,7 +120,7 @@ class AluBench {
     clock();
     top_.task_valid_i = 0;
     while (!all_ready()) clock();
-    top_.task_operand_a_i[0] = static_cast<uint32_t>(random_());  // nobody may look at it
+    top_.task_operand_a_i[0] = static_cast<uint32_t>(random_());  // must not be looked at
     lanes_ = 0;
     mask_ = 0;
   }

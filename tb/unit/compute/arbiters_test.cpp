@@ -211,8 +211,8 @@ class ImportArbiterTest : public testing::Test {};
 using Imports = testing::Types<Import2, Import3, Import4>;
 TYPED_TEST_SUITE(ImportArbiterTest, Imports);
 
-// Units that ask, and the pool whose packages come back in order. Beats come even while the queue of receivers is full
-// and another request waits, so that a place becomes free in the cycle in which a request would take it.
+// Units that ask, and the pool that gives packages in order. Beats come even while the queue of receivers is full and
+// another request waits, so that a place becomes free in the cycle in which a request would take it.
 template <typename Import>
 class ImportArbiterBench {
  public:

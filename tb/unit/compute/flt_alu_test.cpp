@@ -29,7 +29,7 @@ std::vector<AluUnderTest> units(uint32_t significand) {
           {"flush fma", {Subnormals::Flush, SlowUnit::Exact, true, significand}, 7}};
 }
 
-/// The operand `a`, of a conversion of a magnitude that it can tell apart.
+/// The operand `a`, of a conversion of a magnitude that makes a difference.
 uint32_t converted(Opcode opcode, uint32_t a, std::mt19937_64& random) {
   if (opcode == Opcode::F2i && random() % 2)
     return (a & 0x807fffffu) | static_cast<uint32_t>(120 + random() % 42) << 23;

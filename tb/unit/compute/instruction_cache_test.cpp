@@ -1,5 +1,5 @@
-// The instruction cache, in several sizes: a small core of warps looks up, waits for refills as the contract says, and
-// compares. In every cycle its answers, its requests and what it says of refills are those of its class, too.
+// The instruction cache, in several sizes: a small core of warps looks up, waits for refills as in the contract, and
+// compares. In every cycle its answers, its requests and its refills are those of its class, too.
 #include "machine/compute/instruction_cache.hpp"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ class Bench {
     EXPECT_FALSE(answer.hit && answer.miss);
     EXPECT_EQ(answer.valid, looked_up_) << "each lookup gets one answer";
     compare(answer);
-    EXPECT_EQ(u.first_o, refilled_ ? 1u << fetch_warp_ : 0u) << "whose miss began the fetch looks up first";
+    EXPECT_EQ(u.first_o, refilled_ ? 1u << fetch_warp_ : 0u) << "the warp that began the fetch looks up first";
     refilled_ = answer.refill_done;
     if (refilled_) fetch_warp_ = next_fetch_warp_;
     fetching_ = fetching_ && !refilled_;
@@ -202,7 +202,7 @@ TYPED_TEST(InstructionCacheTest, ReplacesTheLeastRecentlyUsedLine) {
 }
 
 // Two lines that differ in one upper bit, whichever it is, in both ways of their set and in either order.
-TYPED_TEST(InstructionCacheTest, TellsLinesApartByEveryBitOfTheirPc) {
+TYPED_TEST(InstructionCacheTest, DistinguishesLinesByEveryBitOfTheirPc) {
   for (uint32_t bit = lowest(8 * Bench<TypeParam>::kWayLines); bit < 16; ++bit) {
     for (const uint32_t before : {0u, 1u}) {  // other lines of the set, so that the pair goes into either way
       Bench<TypeParam> bench;

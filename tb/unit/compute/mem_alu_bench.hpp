@@ -112,8 +112,8 @@ class MemAluBench {
     return 1u << (lowest_bit + random() % (32 - lowest_bit));
   }
   /// How often a register was freed in the cycle in which the privileged loser was chosen; and how often both ways of a
-  /// set that the loser reads from were promised to other registers then, so that it tried in vain.
-  uint64_t freed_while_chosen = 0, freed_in_vain = 0;
+  /// set that the loser reads from were promised to other registers then, so that its try was wasted.
+  uint64_t freed_while_chosen = 0, freed_wasted = 0;
   /// The memory as changed from outside, which is legal before an invalidate.
   void poke(uint32_t address, uint32_t value) {
     memory.word(address) = value;
@@ -229,7 +229,7 @@ class MemAluBench {
     step(&task);
   }
 
-  /// A task whose lane addresses are base + lane * stride, all lanes active.
+  /// A task with lane addresses base + lane * stride, all lanes active.
   MemTask strided(uint32_t warp, bool store, uint32_t base, uint32_t stride) {
     MemTask task;
     task.warp = warp;
@@ -353,7 +353,7 @@ class MemAluBench {
         if (set_of(miss.line[id]) == set_of(line)) promised |= 1u << miss.way[id];
       }
       if (promised != 3 || comes) continue;
-      ++freed_in_vain;
+      ++freed_wasted;
       return;
     }
   }

@@ -32,7 +32,7 @@ class MemAlu : public ::testing::Test {
   using Bench = MemAluBench<M>;
   static constexpr uint32_t kWay = M::kBytes / 2;  ///< bytes between lines of one set
 
-  /// Cycles of a task whose n quadwords hit.
+  /// Cycles of a task with n quadwords that hit.
   static uint64_t hit_cycles(uint64_t quads) { return 2 + std::max<uint64_t>(quads, 1); }
 
   /// Brings the lines of a task into the cache; false if they do not fit at one time.
@@ -53,7 +53,7 @@ class MemAlu : public ::testing::Test {
   };
   /// What the bench has counted.
   struct Seen {
-    uint64_t freed_while_chosen = 0, freed_in_vain = 0;
+    uint64_t freed_while_chosen = 0, freed_wasted = 0;
   };
   static Seen run_random(uint32_t seed, int tasks, const Mix& mix) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -81,7 +81,7 @@ class MemAlu : public ::testing::Test {
     EXPECT_EQ(bench.stores, bench.expected_stores);
     EXPECT_EQ(bench.writes_at_port, bench.expected_stores);
     EXPECT_EQ(bench.faults, 0u);
-    return {bench.freed_while_chosen, bench.freed_in_vain};
+    return {bench.freed_while_chosen, bench.freed_wasted};
   }
 };
 TYPED_TEST_SUITE(MemAlu, Models);
@@ -262,7 +262,7 @@ TYPED_TEST(MemAlu, IllegalAddressesOfActiveLanesFault) {
         EXPECT_EQ(bench.memory.reads() + bench.stores, 0u) << "accessed before the fault";
         EXPECT_TRUE(bench.idle());
 
-        task.mask &= ~(1u << lane);  // now nobody asks for it
+        task.mask &= ~(1u << lane);  // now no lane asks for it
         bench.give(task);
         bench.drain();
         EXPECT_EQ(bench.faults, 1u);
@@ -312,7 +312,7 @@ TYPED_TEST(MemAlu, RandomTasksOfAllWarps) {
 
 // Lines of one set or a few, of which there are more than ways and registers, and which come back one at a time.
 TYPED_TEST(MemAluOfThreeMisses, RegistersAreFreedWhileLosersWaitForAWayOfTheirSet) {
-  uint64_t chosen = 0, in_vain = 0;
+  uint64_t chosen = 0, wasted = 0;
   const int tasks = 12000 / TypeParam::kLanes;
   for (uint32_t seed = 1; seed <= 4; ++seed) {
     for (const uint32_t sets : {1u, 2u, 3u}) {
@@ -322,16 +322,16 @@ TYPED_TEST(MemAluOfThreeMisses, RegistersAreFreedWhileLosersWaitForAWayOfTheirSe
         memory.gap = gap;
         const auto seen = this->run_random(100 * seed + sets, tasks, {sets, 6, 5, 100, memory, seed % 2 == 0});
         chosen += seen.freed_while_chosen;
-        in_vain += seen.freed_in_vain;
+        wasted += seen.freed_wasted;
       }
     }
   }
   EXPECT_GT(chosen, 100u) << "no register was freed in the cycle in which the privileged loser was chosen";
-  EXPECT_GT(in_vain, 10u) << "then no other registers had both ways of the loser's set";
+  EXPECT_GT(wasted, 10u) << "then no other registers had both ways of the loser's set";
 }
 
 // Each bit of an address, in the bank that is accessed, in what waits for it and at the port.
-TYPED_TEST(MemAlu, TellsLinesApartByEveryBitOfTheirAddress) {
+TYPED_TEST(MemAlu, DistinguishesLinesByEveryBitOfTheirAddress) {
   for (uint32_t bit = lowest(this->kWay); bit < 32; ++bit) {
     for (const bool other_first : {false, true}) {  // so that the pair goes into either way
       typename TestFixture::Bench bench;

@@ -343,8 +343,8 @@ class RayAluBench {
     last_event_ = cycle;
   }
 
-  // The package whose last beat arrives in this cycle is in the input slice from now on. Requests taken
-  // now have beats from the next cycle.
+  // The package that gets its last beat in this cycle is in the input slice from now on. Requests taken now have beats
+  // from the next cycle.
   void take_beat() {
     if (unit_->import_beat_valid_i) {
       last_event_ = cycle;
@@ -377,7 +377,7 @@ class RayAluBench {
     if (offer_waits_) check(beat == offered_, "a payload changed while it waited");
     offer_waits_ = false;
     if (!ray && !frame) return;
-    check(!expected_.empty(), "an export that nobody asked for");
+    check(!expected_.empty(), "an export that was not asked for");
     const Export& record = expected_.front();
     check(record.frame == frame, "a ray and a frame contribution changed places");
     offered_ = beat;

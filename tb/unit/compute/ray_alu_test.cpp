@@ -375,7 +375,7 @@ TYPED_TEST(RayAlu, PackagesAreCountedAsTheyAreAskedForAndBeforeTheirDone) {
   EXPECT_EQ(bench.counts.rays + bench.counts.contributions, asked);
 }
 
-TYPED_TEST(RayAlu, TheCountOfExportsBeginsAnewAfter65535) {
+TYPED_TEST(RayAlu, TheCountOfExportsWrapsAfter65535) {
   using Bench = RayAluBench<TypeParam>;
   Bench bench(15);
   uint64_t asked = 0;

@@ -170,7 +170,7 @@ TYPED_TEST(SlwAluLong, ManyRandomRootsAgreeWithTheModel) {
 
 #ifndef RAYPOOL_LARGE
 // What rp_slow_exact.v leaves out of the square of the middle m between two floats, times v, must not matter: for every
-// v of every significand the product differs from 4 by more, and by so little that its lower bits tell the sign.
+// v of every significand the product differs from 4 by more, and by so little that its lower bits give the sign.
 TEST(SlwAluExact, NoInverseRootIsAsNearToAMiddleAsTheTreeIsWrong) {
   for (int p = 11; p <= 24; ++p) {
     const int cut = p - 6, out = 2 * p + 4;  // CUT and OUT there
@@ -200,7 +200,7 @@ TEST(SlwAluExact, NoInverseRootIsAsNearToAMiddleAsTheTreeIsWrong) {
 
 TYPED_TEST(SlwAlu, SubnormalQuotientsOnTheMiddleGoToEven) {
   constexpr uint32_t kSignificand = TypeParam::kSignificand;
-  // n * 2^-149 / 2^k, whose last bits are shifted out: exact ties among them.
+  // n * 2^-149 / 2^k, with last bits that are shifted out: exact ties among them.
   AluBench<typename TypeParam::Top> bench(units(kSignificand), slw_model, kSeed);
   std::mt19937_64 random(kSeed);
   for (int k = 1; k <= 27; ++k) {

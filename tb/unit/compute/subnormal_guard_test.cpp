@@ -1,4 +1,4 @@
-// The ALUs of machines without subnormal numbers say of each task whether it has met one, as the model does.
+// The ALUs of machines without subnormal numbers flag each task that has met one, as the model does.
 #include "machine/compute/subnormal_guard.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ constexpr AluType kTypes[kUnits] = {AluType::Brh, AluType::Flt, AluType::Flt, Al
 constexpr SlowUnit kSlowUnits[kUnits] = {SlowUnit::Exact, SlowUnit::Exact, SlowUnit::Exact, SlowUnit::Exact,
                                          SlowUnit::Newton0};
 constexpr bool kFused[kUnits] = {false, false, true, false, false};
-constexpr int kGroups = 4;  // of the last unit, whose task ports stay for so many cycles
+constexpr int kGroups = 4;  // of the last unit: its task ports stay for so many cycles
 
 struct Task {
   Opcode opcode;
@@ -81,7 +81,7 @@ class Bench {
     top_.task_valid_i = 0;
     if (unit == kUnits - 1)
       for (int n = 1; n < kGroups; ++n) step();
-    top_.task_operand_a_i[0] = 1;  // nobody may look at it
+    top_.task_operand_a_i[0] = 1;  // must not be looked at
   }
 
   void finish() {
@@ -143,8 +143,8 @@ void compare(uint32_t significand) {
   EXPECT_GT(bench.clean, 20'000);
 }
 
-TEST(SubnormalGuard, SaysWhatTheModelSays) { compare<Vguard_units>(24); }
-TEST(SubnormalGuard, SaysWhatTheModelSaysOf13Bits) { compare<Vguard_units_13>(13); }
+TEST(SubnormalGuard, FlagsTheTasksThatTheModelFlags) { compare<Vguard_units>(24); }
+TEST(SubnormalGuard, FlagsTheTasksThatTheModelFlagsOf13Bits) { compare<Vguard_units_13>(13); }
 
 bool met(Opcode opcode, uint32_t a, uint32_t b, uint32_t c = 0, uint32_t mask = 1) {
   Task task{opcode, mask, {a}, {b}, {c}};

@@ -28,7 +28,7 @@ struct RayWords {
   float origin[3], direction[3], limit;
 };
 
-/// What a key says, which may be beyond a float.
+/// The value of a key, which may be beyond a float.
 double value_of(uint32_t key, int bits) {
   if (key == 0) return 0;
   const uint32_t fraction = key & ((1u << (bits - 1)) - 1);
@@ -175,9 +175,8 @@ TEST_P(Narrow, MeetsWhatExactArithmeticMeets) {
   EXPECT_GT(still, 1000u);
 }
 
-// What is subtracted may end below the last bit that is kept: then the distance is less than what the other bits say.
-// It matters where all else is exact: a reciprocal that is m but for little, and an origin that is off by all that it
-// may be.
+// What is subtracted may end below the last bit that is kept: then the distance is less than its other bits. It matters
+// where all else is exact: a reciprocal that is m but for little, and an origin that is off by all that it may be.
 TEST_P(Narrow, OfADifferenceNothingIsRoundedUp) {
   const int bits = GetParam(), places = bits + 3;
   const uint32_t power = 1u << (bits - 1);
@@ -250,7 +249,7 @@ TEST_P(Narrow, MeetsFewBoxesMore) {
 
 INSTANTIATE_TEST_SUITE_P(Bits, Narrow, testing::Range(kLeastBoxBits, kMostBoxBits + 1));
 
-TEST(BoxRay, WhatHitsNothingIsNoRay) {
+TEST(BoxRay, RaysThatHitNothingAreInvalid) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), tiny = std::numeric_limits<float>::denorm_min();
   const RayWords good = {{0, 0, 0}, {1, 0, 0}, kInfinity};
   EXPECT_TRUE(set_up(good, 8).valid);

@@ -1,5 +1,5 @@
-// What is no tree, for the benches of the traverser: trees of which something is changed so that rays may come to what
-// lies nowhere, to what means nothing, or to the same nodes for ever.
+// Malformed trees, for the benches of the traverser: something in them is changed so that rays may come to what lies
+// nowhere, to what means nothing, or to the same nodes for ever.
 #pragma once
 
 #include <cstring>
@@ -78,7 +78,7 @@ inline const GarbageCase kGarbageCases[] = {
      [](LaneTree& tree) { tree.root = leaf_word(places_of(tree) - 1, 4); }},
     {"leaf that no line has", TreeFaultCode::TriangleBeyond,
      [](LaneTree& tree) { tree.root = leaf_word((1u << 29) - 1, 3); }},
-    {"leaf whose line would be the first again", TreeFaultCode::TriangleBeyond,
+    {"leaf with a line that would be the first again", TreeFaultCode::TriangleBeyond,
      [](LaneTree& tree) { tree.root = leaf_word(97612894, 1); }},
     {"no child", TreeFaultCode::Children,
      [](LaneTree& tree) { change_node(tree, 0, [](TreeNode& node) { node.boxes.children = 0; }); }},

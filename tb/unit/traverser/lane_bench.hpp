@@ -23,7 +23,7 @@ namespace raypool::bench {
 
 /// One in so many cycles (0: never): a ray begins, its set-up takes a cycle more, the memory leaves a request, brings a
 /// block, the triangle pipe leaves a test, a ray that is done is left; of lookups, one in so many is left, and is not
-/// in the cache, whose line comes with one in so many cycles; one in so many slots that are free stays so for a cycle.
+/// in the cache: its line comes with one in so many cycles; one in so many slots that are free stays so for a cycle.
 struct LaneTraffic {
   uint32_t begin = 1, set_up = 2, leave_request = 4, fill = 2, leave_test = 0, leave_done = 4, leave_lookup = 8,
            miss = 4, line = 8, free = 2;
@@ -60,7 +60,7 @@ class LaneCache {
   /// What is given in this cycle, or null.
   const LeafReader::Given* given() const { return line_[0] ? &*line_[0] : nullptr; }
 
-  /// Which want it takes, if any. A lane to whom it offers a line asks for none.
+  /// Which want it takes, if any. A lane to which it offers a line asks for none.
   template <typename Random>
   Turn turn(const LineWants& wants, bool room, const std::vector<TreeLine>& lines, const LaneTraffic& traffic,
             Random&& one_of, LaneSeen& seen) {
@@ -226,7 +226,7 @@ class LaneBench {
     ++seen.cycles;
   }
 
-  // The triangle pipe's class and then the lane's: what a test is told takes the results of the same cycle into
+  // The triangle pipe's class and then the lane's: what a test is given takes the results of the same cycle into
   // account.
   void clock_pipe(TraverserLane::Inputs& inputs, const std::optional<LeafReader::Test>& test) {
     LaneHits::Result result;
@@ -351,12 +351,12 @@ class LaneBench {
   }
 
   template <typename Lines, typename Slots>
-  void compare_wants(const LineWants& wants, uint32_t valid, uint32_t nobody, const Lines& lines, const Slots& of) {
+  void compare_wants(const LineWants& wants, uint32_t valid, uint32_t prefetch, const Lines& lines, const Slots& of) {
     for (uint32_t i = 0; i < wants.size(); ++i) {
       ASSERT_EQ(valid >> i & 1, wants[i].valid) << "cycle " << seen.cycles;
       if (!wants[i].valid) continue;
       ASSERT_EQ(get_bits(lines, i * kLineBits, kLineBits), wants[i].line) << "cycle " << seen.cycles;
-      ASSERT_EQ(nobody >> i & 1, wants[i].nobody) << "cycle " << seen.cycles;
+      ASSERT_EQ(prefetch >> i & 1, wants[i].nobody) << "cycle " << seen.cycles;
       if (wants[i].nobody) continue;
       ASSERT_EQ(get_bits(of, i * P::slot_bits(), P::slot_bits()), wants[i].slot) << "cycle " << seen.cycles;
     }

@@ -47,21 +47,21 @@ class Bench {
   void clock(const Traffic& traffic) {
     ASSERT_NO_FATAL_FAILURE(look_at_registers());
     const uint32_t begins = choose(Ray::State::None, traffic.begin);
-    // Whose result comes is told a cycle ahead.
+    // The slot of a result is given a cycle ahead.
     node_slot_ = node_ahead_;
     leaf_slot_ = leaf_ahead_;
     node_ahead_ = choose(Ray::State::Visits, traffic.node);
     leaf_ahead_ = choose(Ray::State::Visits, traffic.leaf);
-    if (leaf_ahead_ == node_ahead_) leaf_ahead_ = kNobody;
-    if (node_slot_ != kNobody) roll_node(traffic);
-    if (leaf_slot_ != kNobody) leaf_ = {leaf_slot_, limit(traffic), one_of(traffic.over)};
+    if (leaf_ahead_ == node_ahead_) leaf_ahead_ = kNoSlot;
+    if (node_slot_ != kNoSlot) roll_node(traffic);
+    if (leaf_slot_ != kNoSlot) leaf_ = {leaf_slot_, limit(traffic), one_of(traffic.over)};
     fills_ = asked_ && one_of(traffic.fill);
     const bool request_ready = !one_of(traffic.leave_request);
     drive(begins, request_ready);
 
     LaneStacks::Inputs inputs;
-    inputs.node = node_slot_ != kNobody ? &node_ : nullptr;
-    inputs.leaf = leaf_slot_ != kNobody ? &leaf_ : nullptr;
+    inputs.node = node_slot_ != kNoSlot ? &node_ : nullptr;
+    inputs.leaf = leaf_slot_ != kNoSlot ? &leaf_ : nullptr;
     inputs.request_taken = request_ready && stacks_.request_valid();
     inputs.filled = fills_ ? &memory_.at(asked_block_) : nullptr;
     if (inputs.request_taken) {
@@ -71,7 +71,7 @@ class Bench {
     const LaneStacks::Outcome outcome = stacks_.clock(inputs);
     ASSERT_NO_FATAL_FAILURE(compare(outcome));
     ASSERT_NO_FATAL_FAILURE(take_outcome(outcome));
-    if (begins != kNobody && outcome.ray_ready) {
+    if (begins != kNoSlot && outcome.ray_ready) {
       stacks_.begin(begins);
       rays_[begins].state = Ray::State::Visits;
       rays_[begins].stack.clear();
@@ -98,7 +98,7 @@ class Bench {
   uint32_t most_blocks = 0;
 
  private:
-  static constexpr uint32_t kNobody = UINT32_MAX;
+  static constexpr uint32_t kNoSlot = UINT32_MAX;
 
   struct Ray {
     enum class State : uint8_t { None, Visits, Waits };
@@ -116,13 +116,13 @@ class Bench {
 
   // A slot in this state, without those that have a result.
   uint32_t choose(typename Ray::State state, uint32_t one_in) {
-    if (!one_of(one_in)) return kNobody;
+    if (!one_of(one_in)) return kNoSlot;
     const uint32_t first = bench_.random() % P::kSlots;
     for (uint32_t i = 0; i < P::kSlots; ++i) {
       const uint32_t slot = (first + i) % P::kSlots;
       if (rays_[slot].state == state && slot != node_slot_ && slot != leaf_slot_) return slot;
     }
-    return kNobody;
+    return kNoSlot;
   }
 
   // While a block waits, nodes have results for the time of a pipe only. Stacks are as deep as the memory lets them be.
@@ -146,9 +146,9 @@ class Bench {
 
   // What means nothing is noise.
   void drive(uint32_t begins, bool request_ready) {
-    const auto slot = [&](uint32_t of) { return of != kNobody ? of : any(8) % P::kSlots; };
-    const bool node = node_slot_ != kNobody, leaf = leaf_slot_ != kNobody;
-    u_.ray_valid_i = begins != kNobody;
+    const auto slot = [&](uint32_t of) { return of != kNoSlot ? of : any(8) % P::kSlots; };
+    const bool node = node_slot_ != kNoSlot, leaf = leaf_slot_ != kNoSlot;
+    u_.ray_valid_i = begins != kNoSlot;
     u_.ray_slot_i = slot(begins);
     u_.node_valid_i = node;
     u_.node_slot_i = slot(node_ahead_);
@@ -228,7 +228,7 @@ class Bench {
   // What must come of the cycle's visits.
   void take_results() {
     if (fills_) asked_ = false;
-    if (node_slot_ != kNobody) {
+    if (node_slot_ != kNoSlot) {
       Ray& ray = rays_[node_slot_];
       for (uint32_t i = 0; i + 1 < node_.children; ++i) ray.stack.push_back(node_.others[i]);
       ray.done = false;
@@ -236,7 +236,7 @@ class Bench {
       if (node_.children == 0) take_entry(ray, node_.limit);
       ray.state = Ray::State::Waits;
     }
-    if (leaf_slot_ != kNobody) {
+    if (leaf_slot_ != kNoSlot) {
       Ray& ray = rays_[leaf_slot_];
       ray.done = leaf_.over;
       if (!leaf_.over) take_entry(ray, leaf_.limit);
@@ -281,8 +281,8 @@ class Bench {
   LaneStacks stacks_{{P::kSlots, P::kEntries}};
   uint64_t cycle_ = 0;
   std::vector<Ray> rays_;
-  uint32_t node_slot_ = kNobody, leaf_slot_ = kNobody;    // whose results come in this cycle
-  uint32_t node_ahead_ = kNobody, leaf_ahead_ = kNobody;  // and in the next one
+  uint32_t node_slot_ = kNoSlot, leaf_slot_ = kNoSlot;    // slots with results in this cycle
+  uint32_t node_ahead_ = kNoSlot, leaf_ahead_ = kNoSlot;  // and in the next one
   LaneStacks::NodeResult node_;
   LaneStacks::LeafResult leaf_;
   std::map<std::pair<uint32_t, uint32_t>, LaneStacks::Block> memory_;  // [slot, block]

@@ -99,13 +99,13 @@ inline LaneRay lane_ray(const RayQuery& query, const Bounds& bounds, uint32_t bi
   return ray;
 }
 
-/// What a ray does. Of what is no tree it ends with a fault.
+/// What a ray does. Of a malformed tree it ends with a fault.
 struct Walk {
   static constexpr uint32_t kLeafLine = 1u << 31;
   std::vector<uint32_t> lines;  ///< of nodes, and of leaves with kLeafLine, in their order
   LaneHits::Hit hit;
   uint32_t deepest = 0;           ///< entries of the stack
-  std::vector<TreeFault> faults;  ///< one of them there must be, if there are any: lines are told without their base
+  std::vector<TreeFault> faults;  ///< one of them there must be, if there are any: lines are given without their base
 
   /// `entries`: of a slot's stack, that are not in the memory.
   Walk(const LaneTree& tree, const LaneRay& ray, const NarrowFloat& narrow, uint32_t entries = 16)

@@ -1,4 +1,4 @@
-// Bench top: a lane with a triangle pipe of its own, which takes a test when the bench says so.
+// Bench top: a lane with a triangle pipe of its own, which takes a test when the bench lets it.
 `default_nettype none
 module lane_units #(
   parameter integer SLOTS = 24,

@@ -1,5 +1,5 @@
 // Parts of a ray's finish that the bench of the whole takes too seldom to their edges: the differences of products,
-// whose class is compared with rational numbers too, and the digits of a root.
+// with their class compared with rational numbers too, and the digits of a root.
 #include <gmp.h>
 #include <gtest/gtest.h>
 #include <verilated.h>

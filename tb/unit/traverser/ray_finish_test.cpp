@@ -113,7 +113,7 @@ struct Time {
   }
 };
 
-TEST(RayFinish, IsWhatTheDefinitionSaysInRationalNumbers) {
+TEST(RayFinish, FollowsItsDefinitionInRationalNumbers) {
   std::mt19937 random(1);
   std::array<int, kKinds> areas{};
   int no_share = 0, no_normal = 0, subnormal_shares = 0, subnormal_normals = 0, subnormal_times = 0, infinite = 0;
@@ -251,7 +251,7 @@ struct Errors {
 
 double double_of(const Exact& x) { return x.rounded(53); }
 
-/// What exact arithmetic says of the ray and the triangle.
+/// The results of exact arithmetic for the ray and the triangle.
 struct ExactHit {
   Exact u, v, normal[3], length_squared;
   bool area;
@@ -284,7 +284,7 @@ struct ExactHit {
     u = weights[1] / sum;
     v = weights[2] / sum;
   }
-  /// Of a component, in units of its own last place: of squares, whose relative error is twice as large.
+  /// Of a component, in units of its own last place: of squares, where the relative error is twice as large.
   double normal_error(float component, int axis) const {
     const Exact square = normal[axis] * normal[axis] / length_squared;
     const Exact here(component);

@@ -20,7 +20,7 @@
 namespace raypool::bench {
 namespace {
 
-/// A ray whose tests are in the pipe.
+/// A ray with tests in the pipe.
 struct Flight {
   NumberedAnswer answer;
   RaySetup setup{{}, {}, 0};
@@ -65,7 +65,7 @@ class PipeAnswers : Clocked<Vtriangle_pipe_32> {
   void answer(const HitCase& hit_case) {
     const uint32_t tag = next_tag_++ % kTags;
     Flight& flight = flights_[tag] = Flight(hit_case);
-    if (flight.left == 0) say(flight);
+    if (flight.left == 0) print(flight);
     for (size_t i = 0, count = flight.left; i < count; ++i) {
       set_triangle_ray(*u, flight.setup.triangle);
       const Triangle& triangle = flight.triangles[i];
@@ -103,9 +103,9 @@ class PipeAnswers : Clocked<Vtriangle_pipe_32> {
         if (triangle.number == u->number_o) flight.best = triangle;
       }
     }
-    if (--flight.left == 0) say(flight);
+    if (--flight.left == 0) print(flight);
   }
-  static void say(Flight& flight) {
+  static void print(Flight& flight) {
     if (flight.best.number != kNoChild) {
       const RayFinish made(flight.setup.triangle, flight.best, flight.best_t, flight.setup.scale);
       flight.answer.answer = {true, flight.best.number, made.t};

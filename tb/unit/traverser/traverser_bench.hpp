@@ -86,14 +86,15 @@ class TraverserBench {
     more_lines_ = 0;
     ASSERT_FALSE(model_->outputs().fault.valid);
   }
-  /// The same of what may be no tree: all are done, or there is a fault that one of them comes to. It stays, nothing is
-  /// requested any more, and a ray does not leave.
+  /// The same of a tree that may be malformed: all are done, or there is a fault that one of them comes to. It stays,
+  /// nothing is requested any more, and a ray does not leave.
   void trace_or_fault(const LaneTree& tree, const std::vector<Asked>& rays, const TraverserTraffic& traffic) {
     ASSERT_NO_FATAL_FAILURE(run(tree, rays, traffic, StackMemory::Keeps));
     const TreeFault& fault = model_->outputs().fault;
     const auto faults = [](const Asked& asked) { return !asked.walk.faults.empty(); };
     if (!fault.valid) {
-      ASSERT_TRUE(std::none_of(rays.begin(), rays.end(), faults)) << "a ray comes to what is no tree, and is done";
+      ASSERT_TRUE(std::none_of(rays.begin(), rays.end(), faults))
+          << "a ray comes to a malformed part of the tree, and is done";
       return;
     }
     const auto is_it = [&](const TreeFault& may) {
@@ -138,8 +139,8 @@ class TraverserBench {
     }
   }
 
-  /// To try what notices: where this word is in a line of the memory, the Verilog alone gets it with a bit turned. 0:
-  /// no word.
+  /// To test the bench: where this word is in a line of the memory, the Verilog alone gets it with a bit turned. 0: no
+  /// word.
   void turn(uint32_t word) { turned_ = word; }
 
   TraverserSeen seen;
@@ -352,7 +353,7 @@ class TraverserBench {
 
   void take_contribution() {
     const FrameContribution& contribution = model_->outputs().contribution;
-    // Rays have colours that tell them apart.
+    // Each ray has a colour of its own.
     const uint32_t number = contribution.rgb[0];
     ASSERT_LT(number, begun_);
     const Asked& asked = (*rays_)[number];
@@ -415,7 +416,7 @@ class TraverserBench {
     return package;
   }
 
-  // What has left may have been this place's, and not that of another one whose package is the same.
+  // What has left may have been this place's, and not that of another one with the same package.
   void exchange_with_alike(uint32_t place) {
     const auto package = [this](uint32_t of) {
       const Asked& asked = (*rays_)[*in_[of]];

@@ -92,7 +92,7 @@ TYPED_TEST(TraverserLaneTest, AgreesWithItsClassInEveryCycleAndEveryRayHitsWhatI
   }
 }
 
-// Times below 2^-125, with the float's least exponent and subnormal ones: a small soup, and triangles whose boxes have
+// Times below 2^-125, with the float's least exponent and subnormal ones: a small soup, and triangles in boxes with
 // planes right through it, as no step of a grid is below 2^-128.
 TYPED_TEST(TraverserLaneTest, AgreesWhereHitsAreAtTheLeastTimes) {
   LaneBench<TypeParam> bench(9);

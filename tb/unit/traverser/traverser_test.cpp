@@ -1,6 +1,6 @@
 // The traverser in Verilog against its class, all outputs in every cycle, over trees and rays that are hard, between
-// pools and a memory that stall; and both against a walk of each tree: what becomes of every ray. Also over what is no
-// tree: rays end, or the fault comes that a walk comes to.
+// pools and a memory that stall; and both against a walk of each tree: what becomes of every ray. Also over malformed
+// trees: rays end, or the fault comes that a walk comes to.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -208,7 +208,7 @@ uint32_t number_from(const char* variable, uint32_t otherwise) {
 }
 
 // RAYPOOL_TREES trees from that of RAYPOOL_SEED on.
-TYPED_TEST(TraverserTest, TreesOfChance) {
+TYPED_TEST(TraverserTest, RandomTrees) {
   if (runs_case_of_file<TypeParam>()) return;
   const uint32_t first = number_from("RAYPOOL_SEED", 1), count = number_from("RAYPOOL_TREES", 30);
   uint64_t rays = 0, cycles = 0;
@@ -222,7 +222,7 @@ TYPED_TEST(TraverserTest, TreesOfChance) {
     test.what.seed = of_bench;
     test.what.traffic = traffic;
     run_case(bench, test.what);
-    if (testing::Test::HasFailure()) shrink_and_tell<TypeParam>(test.what, "*TreesOfChance");
+    if (testing::Test::HasFailure()) shrink_and_report<TypeParam>(test.what, "*RandomTrees");
     ASSERT_FALSE(testing::Test::HasFailure())
         << "tree of seed " << seed << ": RAYPOOL_SEED=" << seed << " RAYPOOL_TREES=1 draws it alone";
     rays += bench.seen.rays;
@@ -236,8 +236,7 @@ TYPED_TEST(TraverserTest, TreesOfChance) {
               static_cast<unsigned long long>(cycles));
 }
 
-// A record need not have what tells rays apart. Garbage of seed 20096 had two that are alike, and the bench took one
-// for the other.
+// Two rays may have equal records. Garbage of seed 20096 had two that are alike, and the bench took one for the other.
 TYPED_TEST(TraverserTest, RaysThatAreAlikeLeaveInAnyOrder) {
   TraverserBench<TypeParam> bench(5);
   for (uint32_t seed = 1; seed <= 40; ++seed) {
@@ -257,8 +256,8 @@ TYPED_TEST(TraverserTest, RaysThatAreAlikeLeaveInAnyOrder) {
   }
 }
 
-// What fails is made small: with a bit of a corner turned that the Verilog alone is given, to one ray and one triangle.
-TYPED_TEST(TraverserTest, WhatFailsIsMadeSmall) {
+// A failing case is minimised: with a bit of a corner flipped for the Verilog alone, to one ray and one triangle.
+TYPED_TEST(TraverserTest, FailingCasesAreMinimised) {
   Case<TypeParam> test(soup(3, 40, 1, {0, 0, 0}), 24, 3);
   test.what.traffic = {0, 2, 30, 3, 0, 0};
   const auto hits = [](const auto& asked) {
@@ -280,9 +279,9 @@ TYPED_TEST(TraverserTest, WhatFailsIsMadeSmall) {
   EXPECT_EQ(traffic.line, 1u);
 }
 
-// As many of what is no tree: bits turned, ways that lead back or together, what lies beyond, any bytes; and memories
+// As many malformed trees: flipped bits, ways that lead back or together, what lies beyond, any bytes; and memories
 // that lose stacks.
-TYPED_TEST(TraverserTest, GarbageOfChance) {
+TYPED_TEST(TraverserTest, RandomGarbage) {
   const uint32_t first = number_from("RAYPOOL_SEED", 1), count = number_from("RAYPOOL_TREES", 60);
   uint64_t rays = 0, cycles = 0, spoilt = 0;
   std::array<uint64_t, 7> faults{};
@@ -302,7 +301,7 @@ TYPED_TEST(TraverserTest, GarbageOfChance) {
     test.what.stacks = stacks;
     test.what.is_tree = false;
     run_case(bench, test.what);
-    if (testing::Test::HasFailure()) shrink_and_tell<TypeParam>(test.what, "*TreesOfChance");
+    if (testing::Test::HasFailure()) shrink_and_report<TypeParam>(test.what, "*RandomTrees");
     ASSERT_FALSE(testing::Test::HasFailure())
         << "garbage of seed " << seed << ": RAYPOOL_SEED=" << seed << " RAYPOOL_TREES=1 draws it alone";
     rays += bench.seen.rays;

@@ -1,5 +1,5 @@
-// A cache of the traverser in Verilog, its banks and who is next at each, against its class, all outputs in every
-// cycle; and both against a memory: every ray gets the line that it asked for, once, and nobody waits for ever.
+// A cache of the traverser in Verilog, its banks and the next lane at each, against its class, all outputs in every
+// cycle; and both against a memory: every ray gets the line that it asked for, once, and none waits for ever.
 #include "machine/traverser/tree_banks.hpp"
 
 #include <gtest/gtest.h>
@@ -39,9 +39,9 @@ struct Parameters {
 /// One in so many cycles (0: never): a lane has another want, leaves a line for which it has waited, offers its wants
 /// in another order than in the cycle before, or leaves one out; the memory leaves a request, a line comes. `lines`
 /// from 0 on are wanted, or with `sets` as many lines of the first so many sets of the banks, shared evenly; one in so
-/// many wants is for nobody, and one is of a line of which some bit is another one.
+/// many wants is a prefetch, and one is of a line with another value in one bit.
 struct Traffic {
-  uint32_t want = 1, leave = 0, turn = 0, withhold = 0, leave_request = 0, fill = 1, lines = 16, nobody = 0, sets = 0,
+  uint32_t want = 1, leave = 0, turn = 0, withhold = 0, leave_request = 0, fill = 1, lines = 16, prefetch = 0, sets = 0,
            other_bit = 0;
 };
 
@@ -115,7 +115,7 @@ class Bench {
     bench_.clock();
     u_.rst_ni = 1;
     restarts_with_fill += fills_ ? 1 : 0;
-    for (const auto& [who, line] : wanted_) free_[who.first].push_back(who.second);
+    for (const auto& [slot, line] : wanted_) free_[slot.first].push_back(slot.second);
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
       for (LineWant& want : wants_[lane]) {
         if (want.valid && !want.nobody) free_[lane].push_back(want.slot);
@@ -137,7 +137,7 @@ class Bench {
   uint64_t restarts_with_fill = 0;
 
  private:
-  using Line = uint32_t;  // data that tells it from others, DATA_BITS are 32
+  using Line = uint32_t;  // data that identifies it, DATA_BITS are 32
   struct OnWay {
     uint32_t line, id;
   };
@@ -158,10 +158,10 @@ class Bench {
   // A want stays with its slot until it is taken; what the lane offers of its two wants it may change in any cycle.
   void want(const Traffic& traffic, uint32_t lane) {
     for (LineWant& want : wants_[lane]) {
-      const bool nobody = one_of(traffic.nobody);
-      if (want.valid || !one_of(traffic.want) || (!nobody && free_[lane].empty())) continue;
-      want = {true, nobody, 0, any_line(traffic) & ((1u << P::kLineBits) - 1)};
-      if (nobody) continue;
+      const bool prefetch = one_of(traffic.prefetch);
+      if (want.valid || !one_of(traffic.want) || (!prefetch && free_[lane].empty())) continue;
+      want = {true, prefetch, 0, any_line(traffic) & ((1u << P::kLineBits) - 1)};
+      if (prefetch) continue;
       want.slot = static_cast<uint8_t>(free_[lane].front());
       free_[lane].pop_front();
     }
@@ -404,12 +404,12 @@ TYPED_TEST(TreeBanksOfMoreMisses, MissesOfOneSetWaitForAWayThoughARegisterIsFree
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Bench<TypeParam> bench(seed);
     constexpr uint32_t kLines = 4 * kSizes.ways, kBanks = kSizes.banks;
-    for (const uint32_t nobody : {0u, 4u}) {
-      for (const Traffic& traffic : {Traffic{1, 0, 1, 0, 0, 4, kLines, nobody, 1},
-                                     Traffic{1, 2, 1, 3, 0, 12, 2 * kBanks * kLines, nobody, 2 * kBanks},
-                                     Traffic{1, 0, 0, 0, 3, 12, 3 * kLines, nobody, kBanks + 1},
-                                     Traffic{1, 0, 1, 0, 0, 90, 2 * kLines, nobody, kBanks + 1},
-                                     Traffic{1, 0, 0, 0, 0, 7, kBanks * kLines, nobody, 1 + kBanks, 5}}) {
+    for (const uint32_t prefetch : {0u, 4u}) {
+      for (const Traffic& traffic : {Traffic{1, 0, 1, 0, 0, 4, kLines, prefetch, 1},
+                                     Traffic{1, 2, 1, 3, 0, 12, 2 * kBanks * kLines, prefetch, 2 * kBanks},
+                                     Traffic{1, 0, 0, 0, 3, 12, 3 * kLines, prefetch, kBanks + 1},
+                                     Traffic{1, 0, 1, 0, 0, 90, 2 * kLines, prefetch, kBanks + 1},
+                                     Traffic{1, 0, 0, 0, 0, 7, kBanks * kLines, prefetch, 1 + kBanks, 5}}) {
         for (uint32_t i = 0; i < 3000; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
         ASSERT_NO_FATAL_FAILURE(bench.drain());
       }

@@ -28,11 +28,11 @@ struct Parameters {
   static constexpr TreeCache::Sizes kSizes{lanes, lines, ways, mshrs};
 };
 
-/// One in so many cycles (0: never): somebody looks up a line, a lane leaves an offer, the memory leaves a request, a
-/// line comes. `lines` from 0 on are looked up, or with `sets` as many lines of the first so many sets, shared evenly;
-/// one in so many lookups is for nobody, and one is of a line of which some bit is another one.
+/// One in so many cycles (0: never): lanes look up a line, a lane leaves an offer, the memory leaves a request, a line
+/// comes. `lines` from 0 on are looked up, or with `sets` as many lines of the first so many sets, shared evenly; one
+/// in so many lookups is a prefetch, and one is of a line with another value in one bit.
 struct Traffic {
-  uint32_t lookup = 1, leave_offer = 0, leave_request = 0, fill = 1, lines = 16, nobody = 0, sets = 0, other_bit = 0;
+  uint32_t lookup = 1, leave_offer = 0, leave_request = 0, fill = 1, lines = 16, prefetch = 0, sets = 0, other_bit = 0;
 };
 
 template <typename P>
@@ -50,7 +50,7 @@ class Bench {
     const uint32_t fill_id = fill ? on_way_.front().id : 0;
     const Line data = fill ? line_data(on_way_.front().line) : Line{};
     const bool taken = looks_ && cache_.ready() && !fill;
-    // A lane whose lookup is taken takes no offer.
+    // A lane that has its lookup taken takes no offer.
     const bool offer_taken =
         cache_.offers() && !one_of(traffic.leave_offer) && !(taken && (lookup_.lanes >> cache_.offer_lane() & 1) != 0);
     const bool request_ready = !one_of(traffic.leave_request);
@@ -115,7 +115,7 @@ class Bench {
     u_.rst_ni = 1;
     restarts_with_fill += comes ? 1 : 0;
     busy_at_restart += cache_.busy() != 0 ? 1 : 0;
-    for (const auto& [who, line] : wanted_) free_[who.first].push_back(who.second);
+    for (const auto& [slot, line] : wanted_) free_[slot.first].push_back(slot.second);
     for (uint32_t lane = 0; looks_ && lane < P::kLanes; ++lane)
       if ((lookup_.lanes >> lane & 1) != 0) free_[lane].push_back(lookup_.slots[lane]);
     cache_ = TreeCache(P::kSizes);
@@ -132,7 +132,7 @@ class Bench {
   uint64_t restarts_with_fill = 0, busy_at_restart = 0;
 
  private:
-  using Line = uint32_t;  // data that tells it from others, DATA_BITS are 32
+  using Line = uint32_t;  // data that identifies it, DATA_BITS are 32
   struct OnWay {
     uint32_t line, id;
   };
@@ -145,7 +145,7 @@ class Bench {
     lookup_ = {};
     lookup_.line = any_line(traffic) & ((1u << P::kLineBits) - 1);
     looks_ = true;
-    if (one_of(traffic.nobody)) return;
+    if (one_of(traffic.prefetch)) return;
     for (uint32_t lane = 0; lane < P::kLanes; ++lane) {
       if (free_[lane].empty() || (P::kLanes > 1 && bench_.random() % 3 != 0)) continue;
       lookup_.lanes |= 1u << lane;
@@ -310,11 +310,11 @@ TYPED_TEST(TreeCacheOfMoreMisses, MissesOfOneSetWaitForAWayThoughARegisterIsFree
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Bench<TypeParam> bench(seed);
     constexpr uint32_t kLines = 4 * kSizes.ways;
-    for (const uint32_t nobody : {0u, 4u}) {
+    for (const uint32_t prefetch : {0u, 4u}) {
       for (const Traffic& traffic :
-           {Traffic{1, 0, 0, 4, kLines, nobody, 1}, Traffic{1, 2, 0, 12, kLines, nobody, 2},
-            Traffic{1, 0, 3, 12, kLines, nobody, 3}, Traffic{1, 0, 0, 90, kLines, nobody, 2},
-            Traffic{2, 3, 0, 40, kLines / 2 + 1, nobody, 2}, Traffic{1, 0, 0, 7, kLines, nobody, 2, 5}}) {
+           {Traffic{1, 0, 0, 4, kLines, prefetch, 1}, Traffic{1, 2, 0, 12, kLines, prefetch, 2},
+            Traffic{1, 0, 3, 12, kLines, prefetch, 3}, Traffic{1, 0, 0, 90, kLines, prefetch, 2},
+            Traffic{2, 3, 0, 40, kLines / 2 + 1, prefetch, 2}, Traffic{1, 0, 0, 7, kLines, prefetch, 2, 5}}) {
         for (uint32_t i = 0; i < 4000; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
         ASSERT_NO_FATAL_FAILURE(bench.drain());
       }

@@ -282,9 +282,9 @@ inline TreeCase case_of(const nlohmann::json& json) {
   return what;
 }
 
-/// A case that fails is made small, and written to a file that RAYPOOL_CASE runs again.
+/// Minimises a failing case and writes it to a file that RAYPOOL_CASE runs again.
 template <typename P>
-void shrink_and_tell(const TreeCase& what, const std::string& filter) {
+void shrink_and_report(const TreeCase& what, const std::string& filter) {
   const std::optional<Wrong> wrong = wrong_with<P>(what);
   if (!wrong) return;
   TreeShrinker shrinker(what, [&](const TreeCase& cut) {
@@ -307,7 +307,7 @@ bool runs_case_of_file() {
   std::ifstream file(path);
   const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
   if (json.is_discarded()) {
-    ADD_FAILURE() << path << ": is no case: a failing test writes one, and says where";
+    ADD_FAILURE() << path << ": is not a case: a failing test writes one and prints its path";
     return true;
   }
   if (json.at("lanes") != P::sizes().lanes || json.at("slots") != P::sizes().slots) return true;

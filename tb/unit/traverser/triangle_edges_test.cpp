@@ -41,7 +41,7 @@ float next_to(std::mt19937& random, float x) {
 
 struct Counts {
   int signs[3] = {};  ///< -1, 0, 1
-  int close = 0;      ///< products that floats cannot tell apart, and that are not equal
+  int close = 0;      ///< products that are equal in floats, but not exactly
   int subnormal = 0;
 };
 
@@ -60,7 +60,7 @@ TEST(TriangleEdges, SignsAreThoseOfRationalNumbers) {
   std::mt19937 random(1);
   Counts counts;
   for (int i = 0; i < 400000; ++i) {
-    // All floats, of which engines take those whose products are finite: no distance is above 2e18.
+    // All floats, of which engines take those with finite products: no distance is above 2e18.
     const bool engines = i % 2 == 0;
     const int most = engines ? 60 : 127, least = i % 4 < 2 ? -127 : most - 6;
     float ax = any_float(random, least, most), by = any_float(random, least, most);
@@ -133,7 +133,7 @@ TEST(TriangleEdges, InsideIsWhereSignsAgree) {
   EXPECT_EQ(edges.signs[0], edges.signs[2]);
 }
 
-/// Corners around a ray: some of chance, some of which edges go through the ray or nearly so.
+/// Corners around a ray: some random, some with edges that go through the ray or nearly so.
 struct Corners {
   std::array<float, 3> x, y;
 

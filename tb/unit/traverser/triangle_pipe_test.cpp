@@ -120,7 +120,7 @@ TEST(TrianglePipe, OfTwoAtTheSameTimeTheLowerNumberIsHit) {
   EXPECT_TRUE(hit(std::nextafter(0.5f, 1.0f), INFINITY, 8));
 }
 
-/// What the ray of each tag says when a test asks.
+/// What the ray of each tag answers when a test asks.
 struct Answers {
   TrianglePipe::Limit limit{1, 0};
   TrianglePipe::Best best{1, 0};

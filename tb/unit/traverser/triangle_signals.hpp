@@ -32,7 +32,7 @@ void set_floats(uint32_t* words, const Floats& floats) {
   for (const float x : floats) *words++ = as_bits(x);
 }
 
-/// Of a unit whose ports have these names.
+/// Of a unit with ports of these names.
 template <typename Unit>
 void set_triangle_ray(Unit& unit, const TriangleRay& ray) {
   set_floats(&unit.origin_i[0], ray.origin);

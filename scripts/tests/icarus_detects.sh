@@ -1,5 +1,5 @@
 #!/bin/bash
-# Does the replay in Icarus notice what Verilator cannot: scripts/tests/icarus_notices.sh RAYPOOL CHIP_FRAMES FOLDER.
+# Does the replay in Icarus detect what Verilator cannot: scripts/tests/icarus_detects.sh RAYPOOL CHIP_FRAMES FOLDER.
 # Registers of the unit and of the chip without their reset, and a program that reads a register which it never wrote,
 # must each end with an X on a named output. Needs the Verilated unit of tb/mutants/2w2c.json.
 set -u -o pipefail
@@ -8,16 +8,16 @@ cd "$(dirname "$0")/../.." || exit 1
 mkdir -p "$folder"
 failures=0
 
-# notices WHAT RTL OUTPUT PROGRAM: the replay of PROGRAM on the files of RTL shows an X on OUTPUT.
-notices() {
+# detects WHAT RTL OUTPUT PROGRAM: the replay of PROGRAM on the files of RTL shows an X on OUTPUT.
+detects() {
   local what=$1 rtl=$2 output=$3 program=$4
   expect_x "$what" "$output" "$(RTL=$rtl scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" \
     "$program" 2>&1)"
 }
 
-# chip_notices WHAT OUTPUT MACHINE [FRAME]: the same of a frame of a chip, the first one if none is named, with the copy
+# chip_detects WHAT OUTPUT MACHINE [FRAME]: the same of a frame of a chip, the first one if none is named, with the copy
 # of rtl/.
-chip_notices() {
+chip_detects() {
   expect_x "$1" "$2" "$(RTL=$folder/rtl scripts/icarus_chip.sh "$chip_frames" "$folder/run" "$3" "${4:-1}" 2>&1)"
 }
 
@@ -48,11 +48,11 @@ text=$(scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" 1 2>&1) |
 undefined=tb/icarus/undefined_register.json
 "$raypool" cosim --replay $undefined --unchecked --show-config > "$folder/undefined.json"
 RAYPOOL=$raypool scripts/unit.sh "$folder/undefined.json"
-notices "a register that is read before it is written" rtl "retire_data" $undefined
+detects "a register that is read before it is written" rtl "retire_data" $undefined
 without_reset compute/rp_compute_unit.v fault_q
-notices "the fault flag without reset" "$folder/rtl" "fault_valid" 1
+detects "the fault flag without reset" "$folder/rtl" "fault_valid" 1
 without_reset compute/rp_launcher.v running_o
-notices "the launcher's state without reset" "$folder/rtl" "busy" 1
+detects "the launcher's state without reset" "$folder/rtl" "busy" 1
 
 # Of a chip with the traverser inside: 22 is the smallest, 26 has several rays in flight.
 for machine in 22 26; do
@@ -60,12 +60,12 @@ for machine in 22 26; do
     { failures=$((failures + 1)); echo "FAILED: the sound chip: $text"; }
 done
 without_reset chip/rp_controller.v busy_o
-chip_notices "whether a frame is drawn, without reset" busy 22
+chip_detects "whether a frame is drawn, without reset" busy 22
 without_reset traverser/rp_tree_port.v request_valid_o
-chip_notices "a request of the traverser without reset" tree_request_valid 22
+chip_detects "a request of the traverser without reset" tree_request_valid 22
 without_reset traverser/rp_tree_cache.v valid_q
-chip_notices "which lines a cache has, without reset" tree_request_valid 22
+chip_detects "which lines a cache has, without reset" tree_request_valid 22
 without_reset traverser/rp_leaf_reader.v held_q
-chip_notices "how many lines a lane holds, without reset" tree_request_address 26 2
+chip_detects "how many lines a lane holds, without reset" tree_request_address 26 2
 
 [ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }
