@@ -66,20 +66,20 @@ constexpr const char* kCase = R"({"case":0,"origin":["0","0","1"],"direction":["
                               R"("triangles":[[["-1","-1","0"],["1","-1","0"],["0","1","0"]]])";
 
 TEST_F(CorpusFile, RefusesMalformedCases) {
-  const auto refusal = [&](const std::string& text) {
+  const auto refusal_of = [&](const std::string& text) {
     written(text);
     return refusal([&] { read_corpus(path_); });
   };
-  EXPECT_EQ(refusal(std::string(kCase) + "}\n"), "");
-  EXPECT_EQ(refusal("\n"), ": has no case: give a line for each");
-  EXPECT_NE(refusal("{\n").find(", line 1: not valid JSON"), std::string::npos);
-  EXPECT_NE(refusal(std::string(kCase) + "}\n{\"case\":1}\n").find(", line 2:"), std::string::npos);
-  EXPECT_NE(refusal(R"({"case":0,"origin":["0",0,"1"]})").find("origin[1]"), std::string::npos);
-  EXPECT_NE(refusal(R"({"case":0,"origin":["0","x","1"]})").find("must be a float as a text"), std::string::npos);
+  EXPECT_EQ(refusal_of(std::string(kCase) + "}\n"), "");
+  EXPECT_EQ(refusal_of("\n"), ": has no case: give a line for each");
+  EXPECT_NE(refusal_of("{\n").find(", line 1: not valid JSON"), std::string::npos);
+  EXPECT_NE(refusal_of(std::string(kCase) + "}\n{\"case\":1}\n").find(", line 2:"), std::string::npos);
+  EXPECT_NE(refusal_of(R"({"case":0,"origin":["0",0,"1"]})").find("origin[1]"), std::string::npos);
+  EXPECT_NE(refusal_of(R"({"case":0,"origin":["0","x","1"]})").find("must be a float as a text"), std::string::npos);
   std::string infinite = kCase;
   infinite.replace(infinite.find("\"-1\""), 4, "\"inf\"");
-  EXPECT_NE(refusal(infinite + "}").find("triangles[0][0] must be finite"), std::string::npos)
-      << refusal(infinite + "}");
+  EXPECT_NE(refusal_of(infinite + "}").find("triangles[0][0] must be finite"), std::string::npos)
+      << refusal_of(infinite + "}");
 }
 
 TEST_F(CorpusFile, RefusesACertificateThatIsNotThatOfTheNumbers) {
@@ -91,12 +91,12 @@ TEST_F(CorpusFile, RefusesACertificateThatIsNotThatOfTheNumbers) {
 }
 
 TEST_F(CorpusFile, HoldsAnAnswerACase) {
-  const auto refusal = [&](const std::string& text) {
+  const auto refusal_of = [&](const std::string& text) {
     written(text);
     return refusal([&] { read_answers(path_, 2); });
   };
   const std::string first = to_line(NumberedAnswer{0, {true, 3, 1.5f}}) + '\n', second = to_line(NumberedAnswer{1, {}});
-  EXPECT_EQ(refusal(first + second), "");
+  EXPECT_EQ(refusal_of(first + second), "");
   const RecordedAnswers recorded = read_answers(path_, 2);
   const auto answers = contender_of(recorded);
   Said said;
@@ -106,9 +106,10 @@ TEST_F(CorpusFile, HoldsAnAnswerACase) {
   hit_case.number = 1;
   answers->answer(hit_case, &said);
   EXPECT_FALSE(said->hit);
-  EXPECT_EQ(refusal(first), ": case 1 has no answer: each needs a line");
-  EXPECT_EQ(refusal(first + first + second), ", line 2: case 0 is answered twice: keep one of them");
-  EXPECT_EQ(refusal(first + to_line(NumberedAnswer{2, {}})), ", line 2: the corpus has no case 2, only those below 2");
+  EXPECT_EQ(refusal_of(first), ": case 1 has no answer: each needs a line");
+  EXPECT_EQ(refusal_of(first + first + second), ", line 2: case 0 is answered twice: keep one of them");
+  EXPECT_EQ(refusal_of(first + to_line(NumberedAnswer{2, {}})),
+            ", line 2: the corpus has no case 2, only those below 2");
 }
 
 }  // namespace
