@@ -25,7 +25,7 @@ export SIZE ?= 200x200
 export DEPTH ?= 3
 #:   CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, [best_]NwMc, file
 export CONFIG ?= 8w8c
-#:   ENGINE=native|functional|sampled|model|rtl|lockstep
+#:   ENGINE=native|estimate|functional|sampled|model|rtl|lockstep
 #:                                 what stands in for the hardware
 export ENGINE ?= lockstep
 #:   BOUNDARY=unit|chip            ENGINE=rtl, lockstep: what is Verilog       unit
@@ -42,7 +42,7 @@ export CUS ?= 1
 #:   TRACE=FROM:CYCLES|pixel:X,Y   what happens then, for Perfetto, Konata and make report;
 #:                                 1: 0:20000; ENGINE=model
 #:   HITS=own|embree               ENGINE=native: the hits to draw with        own
-#:   THREADS=N                     ENGINE=native, sampled                      all cores
+#:   THREADS=N                     ENGINE=native, estimate, sampled            all cores
 #:   ERROR=N%  or  TIME=Ns         ENGINE=sampled: what may be afforded        ERROR=2%
 #:   SEED=N                        of what is random: ENGINE=sampled, cosim ...
 export SEED ?= 1
@@ -77,8 +77,8 @@ LOCKED := flock $(BUILD)/.lock
 # Benches with runs of hours, which are worth an optimised build.
 OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/benches ON \
   -DRAYPOOL_BENCHES_OPTIMISED=ON
-# Where nothing is built yet, make sim compiles only what draws. The engine sampled is a study's.
-DRAWS := $(if $(or $(wildcard $(RAYPOOL)),$(filter sampled,$(ENGINE))),raypool,raypool-sim)
+# Where nothing is built yet, make sim compiles only what draws. The engines estimate and sampled are studies.
+DRAWS := $(if $(or $(wildcard $(RAYPOOL)),$(filter estimate sampled,$(ENGINE))),raypool,raypool-sim)
 # built PROGRAM,WORDS: builds it, and prints WORDS where it is not there yet.
 built = @[ -x $(BUILD)/$1 ] || echo 'building $2'; scripts/build.sh $(BUILD) $1
 # options NAMES: of each variable that is set the option, --look-at for LOOK_AT, --units for CUS. A value stays one

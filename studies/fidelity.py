@@ -45,6 +45,7 @@ class Level(typing.NamedTuple):
 # From the fastest to the hardware. The last one that runs is the reference of all others.
 LEVELS = (
     Level("native", ("--engine", "native")),
+    Level("estimate", ("--engine", "estimate")),
     Level("functional", ("--engine", "functional")),
     Level("sampled", ("--engine", "sampled")),
     Level("model", ("--engine", "model"), exact=True),
@@ -109,8 +110,8 @@ def differences(report, other):
 
 def utilisations(report):
     """({ALU: share}, {port: share}); what the level does not know is None or left out."""
-    if sampled := report.get("sampled"):
-        return tuple({name.replace("_", " "): interval["value"] for name, interval in sampled[kind].items()}
+    if estimates := report.get("sampled") or report.get("estimated"):
+        return tuple({name.replace("_", " "): interval["value"] for name, interval in estimates[kind].items()}
                      for kind in ("alus", "ports"))  # fmt: skip
     alus = {name: alu["utilisation"] for name, alu in report.get("alus", {}).items()}
     ports = {name.removesuffix("_utilisation").removeprefix("pools.").replace("_", " ").replace(".", " "): share

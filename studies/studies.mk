@@ -65,6 +65,10 @@ numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arit
 	@$(RAYPOOL) numerics $(call options,OUT) $(ARGS)
 	@$(PYTHON) studies/numerics_plots.py "$${OUT:-$(BUILD)/out/numerics}"
 
+#: variables of make estimates:  MACHINES=N: random ones;  SEED=N
+estimates: setup-sim program ## how far engine estimate is off, on random machines and frames
+	@RAYPOOL=$(RAYPOOL) $(PYTHON) studies/estimates.py $(call options,MACHINES SEED) $(ARGS)
+
 #: variables of make significands: SCENE, CONFIG, SET, DEPTH, and from VIEW to DETAIL
 significands: setup-sim program ## what floats of 11 to 24 bits do to SCENE's picture, and how few bits are enough
 	@$(RAYPOOL) significands $(call options,SCENE CONFIG SET DEPTH $(LOOK)) $(ARGS)

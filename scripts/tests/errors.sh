@@ -92,7 +92,7 @@ refuses_sim "size 0x0" "0x0.*1 to 16384" --size 0x0
 refuses_sim "size without x" "1 to 16384" --size 64
 refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
-refuses_sim "unknown engine" "native, functional, sampled, model, rtl or lockstep" --engine spice
+refuses_sim "unknown engine" "native, estimate, functional, sampled, model, rtl or lockstep" --engine spice
 refuses_sim "unknown boundary" "no boundary 'board'; use unit or chip" --engine rtl --boundary board
 refuses_sim "a boundary without Verilog" "engine model has no Verilog, and so no boundary" --engine model \
   --boundary chip

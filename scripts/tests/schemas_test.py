@@ -19,7 +19,7 @@ import jsonschema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RAYPOOL = ""
-ENGINES = ["native", "functional", "sampled", "model"]
+ENGINES = ["native", "estimate", "functional", "sampled", "model"]
 
 
 def read(path):
@@ -221,7 +221,8 @@ class Report(Written):
                 self.refuses_changes(valid, report)
 
     def refuses_changes(self, valid, report):
-        names = set(report["kernels"]) | set(report.get("alus", {})) | set(report.get("sampled", {}).get("alus", {}))
+        estimates = report.get("sampled", report.get("estimated", {}))
+        names = set(report["kernels"]) | set(report.get("alus", {})) | set(estimates.get("alus", {}))
 
         # What a configuration leaves out has its default; kernels and ALUs are left open.
         def required(path):

@@ -22,7 +22,7 @@ void add_depth(CLI::App& app, int& depth);
 void add_units(CLI::App& app, int& units);
 void add_traverser(CLI::App& app, std::string& traverser);
 /// The engines of a frame, and those of a program.
-inline constexpr char kEnginesOfFrames[] = "native|functional|sampled|model|rtl|lockstep";
+inline constexpr char kEnginesOfFrames[] = "native|estimate|functional|sampled|model|rtl|lockstep";
 inline constexpr char kEnginesOfPrograms[] = "functional|model|rtl|lockstep";
 /// --engine, one of `names`, and --unit-library.
 void add_engine(CLI::App& app, std::string& engine, std::string& library, const std::string& names);

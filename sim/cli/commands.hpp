@@ -36,7 +36,7 @@ struct SimOptions {
   std::string unit_library;  ///< Verilated unit; empty: unit_library_path()
   int depth = 3;
   int units = 1;
-  uint32_t threads = 0;  ///< of engines native and sampled; 0: as many as the machine has cores
+  uint32_t threads = 0;  ///< of engines native, estimate and sampled; 0: as many as the machine has cores
   /// Of engine sampled: "2%" of the cycles, half of their interval, or "10s" for the whole command; one or none.
   std::string error, time;
   uint64_t seed = 0;  ///< of engine sampled; 0: as 1

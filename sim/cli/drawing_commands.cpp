@@ -43,7 +43,7 @@ void DrawingCommands::add_engine_options(CLI::App& sim_app) {
                   "raypool compare")
       ->type_name("single|double")
       ->group(option_group::kEngine);
-  add_threads(sim_app, sim_.threads, "native, sampled: threads")->group(option_group::kEngine);
+  add_threads(sim_app, sim_.threads, "native, estimate, sampled: threads")->group(option_group::kEngine);
   sim_app
       .add_option("--cycles", sim_.cycle_limit,
                   "model, rtl, lockstep: stop after this many cycles (default: after 10000000 without a transfer)")

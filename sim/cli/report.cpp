@@ -65,7 +65,7 @@ void add_rays(Json& json, const RayCounts& rays, uint64_t too_deep) {
   };
   json["rays_by_kind"] = by_kind(&RayCounts::Kind::traced);
   json["rays_without_weight"] = by_kind(&RayCounts::Kind::weightless);
-  json["rays_in_vain"] = by_kind(&RayCounts::Kind::futile);
+  json["rays_wasted"] = by_kind(&RayCounts::Kind::futile);
   json["rays_left_out"] = by_kind(&RayCounts::Kind::left_out);
   json["rays_that_end"] = {{"missed", rays.missed()}, {"blocked", rays.blocked()}, {"too_deep", too_deep}};
 }

@@ -20,29 +20,33 @@ namespace {
 // Pixels whose flow is computed, in so many runs of neighbouring tiles.
 constexpr uint32_t kPixels = 16384, kRuns = 16;
 constexpr int kRounds = 2;
-// Half of a 95% interval, as a share: studies/estimates.py measures it.
-constexpr double kCyclesError = 0.12, kShareError = 0.12, kLeastShareError = 0.01;
+// How far 19 of 20 estimates are off at most, as a share of the true value: `make estimates` measures it.
+constexpr double kStaticError = 0.11, kHardwareError = 0.31, kLeastShareError = 0.01;
 
-EnumArray<RayKernel, KernelCosts, kRayKernels> kernel_costs(const Configuration& configuration) {
+KernelTable kernel_costs(const Configuration& configuration) {
   const Program& program = ray_kernel_program(KernelTarget(configuration));
-  EnumArray<RayKernel, KernelCosts, kRayKernels> costs;
+  KernelTable costs;
   for (size_t i = 0; i < kRayKernels; ++i) costs[i] = costs_of(program, kRayKernelNames[i], configuration);
   return costs;
 }
 
-/// Numbers of the tiles whose flow is computed, ascending.
-std::vector<uint32_t> chosen_tiles(uint32_t tiles, uint32_t threads) {
+struct Chosen {
+  uint32_t tile;
+  bool filled;  // caches are as they are in the whole frame
+};
+/// The tiles whose flow is computed, in their order.
+std::vector<Chosen> chosen_tiles(uint32_t tiles, uint32_t threads) {
   const uint32_t wanted = std::max(4 * kRuns, kPixels / threads);
-  std::vector<uint32_t> chosen;
+  std::vector<Chosen> chosen;
   if (wanted >= tiles) {
-    for (uint32_t i = 0; i < tiles; ++i) chosen.push_back(i);
+    for (uint32_t i = 0; i < tiles; ++i) chosen.push_back({i, true});
     return chosen;
   }
   const uint32_t run = wanted / kRuns;
   for (uint32_t k = 0; k < kRuns; ++k) {
     const auto first = static_cast<uint32_t>(uint64_t{k} * (tiles - run) / (kRuns - 1));
     for (uint32_t i = 0; i < run; ++i)
-      if (chosen.empty() || first + i > chosen.back()) chosen.push_back(first + i);
+      if (chosen.empty() || first + i > chosen.back().tile) chosen.push_back({first + i, 2 * i >= run});
   }
   return chosen;
 }
@@ -58,7 +62,7 @@ class TileCounter {
       : configuration_(configuration), tracer_(tracer), native_(native), tile_of_(native.width * native.height) {
     const std::vector<PixelTile> all = chip::along_walk(configuration, native.width, native.height);
     const uint32_t width = 1u << tile_width_log2(configuration.contents());
-    for (const uint32_t number : chosen_tiles(size32(all), all.front().pixels)) {
+    for (const auto& [number, filled] : chosen_tiles(size32(all), all.front().pixels)) {
       const PixelTile& tile = all[number];
       TileWork work;
       work.threads = tile.pixels;
@@ -69,6 +73,7 @@ class TileCounter {
         ++work.pixels;
       }
       native_.parts.push_back({tile});
+      visits_.counts.push_back(filled);
       work_.push_back(work);
     }
     counts_.resize(work_.size());
@@ -134,10 +139,6 @@ class TileCounter {
   RayVisits visits_;
 };
 
-Interval about(double value, double error, double most) {
-  return {value, std::max(0.0, value - error), std::min(most, value + error)};
-}
-
 }  // namespace
 
 Estimates estimate_frame(const Configuration& configuration, uint32_t units, const Scene& scene,
@@ -155,24 +156,23 @@ Estimates estimate_frame(const Configuration& configuration, uint32_t units, con
     // What caches read depends on how many rays are in flight and in which order, and that on what they read.
     for (int i = 0; i < kRounds; ++i) {
       const auto in_flight = std::max(1u, static_cast<uint32_t>(flow.in_flight));
-      work.reads = reads_a_ray(configuration.chip, counter.visits(), flow.order, in_flight, counter.rays() < rays);
+      work.reads = reads_a_ray(configuration.chip, counter.visits(), flow.order, in_flight);
       flow = flow_of(configuration, units, work, kernels);
     }
   }
-  if (getenv("DBG"))
-    fprintf(stderr, "reads nodes %.2f triangles %.2f flight %.0f\n", work.reads.nodes, work.reads.triangles,
-            flow.in_flight);
 
   double cycles = flow.cycles;
   if (flow.rays < rays && flow.steady_rays > 0)
     cycles += flow.steady_cycles / flow.steady_rays * std::max(0.0, rays - flow.rays);
+  const double error = configuration.chip.traverser == TraverserName::Hardware ? kHardwareError : kStaticError;
   Estimates estimates;
-  estimates.cycles = about(cycles, kCyclesError * cycles, std::numeric_limits<double>::infinity());
+  estimates.cycles = {cycles, cycles / (1 + error), cycles / (1 - error)};
   const auto mrays = [&](double in_cycles) { return 1e3 * rays / in_cycles; };
   estimates.mrays_per_s = {mrays(cycles), mrays(estimates.cycles.high), mrays(estimates.cycles.low)};
-  const auto share = [](double value) {
+  const auto share = [&](double value) {
     value = std::min(1.0, value);
-    return about(value, std::max(kLeastShareError, kShareError * value), 1);
+    const double off = std::max(kLeastShareError, error * value);
+    return Interval{value, std::max(0.0, value - off), std::min(1.0, value + off)};
   };
   estimates.ray_port = share(flow.ray_port / flow.cycles);
   estimates.intersection_port = share(flow.intersection_port / flow.cycles);

@@ -10,7 +10,7 @@ namespace raypool::estimate {
 namespace {
 
 // Cycles of an instruction beside those in its ALU: instruction buffer, registers, dispatch, and the result's.
-constexpr double kAround = 3;
+constexpr double kStages = 3;
 // The next instruction is fetched when a control instruction is done: PC stack, arbiter, cache, buffer.
 constexpr double kFetch = 4;
 // A swap of ray memory that need not wait; a load whose lanes share a quadword that is there.
@@ -38,10 +38,10 @@ Exchange exchange_of(Opcode opcode) {
 /// Cycles until the last element's result: each behind the other's, or, where elements overlap, two cycles or the
 /// ALU's occupation behind.
 double serial_of(const InstructionInfo& info, const Timing& timing) {
-  if (!is_triple(info)) return kAround + timing.depth;
+  if (!is_triple(info)) return kStages + timing.depth;
   const bool overlap = info.alu() == AluType::Flt || info.alu() == AluType::Ray;
-  const double behind = overlap ? std::max(2.0, timing.occupied) : kAround + timing.depth - 1;
-  return kAround + timing.depth + (kElements - 1) * behind;
+  const double behind = overlap ? std::max(2.0, timing.occupied) : kStages + timing.depth - 1;
+  return kStages + timing.depth + (kElements - 1) * behind;
 }
 
 }  // namespace

@@ -57,21 +57,25 @@ std::vector<size_t> numbers_in(const std::vector<RayKind>& order, const RayVisit
 }  // namespace
 
 TreeReads reads_a_ray(const ChipConfiguration& chip, const RayVisits& rays, const std::vector<RayKind>& in_order,
-                      uint32_t in_flight, bool filled) {
+                      uint32_t in_flight) {
   Tags nodes(chip.hardware_traverser_node_cache_bytes, chip.hardware_traverser_node_cache_ways);
   Tags triangles(chip.hardware_traverser_triangle_cache_bytes, chip.hardware_traverser_triangle_cache_ways);
   const std::vector<size_t> order = numbers_in(in_order, rays);
   struct Flying {
-    size_t number, next, end;  // in `order`; in places
+    size_t next, end;  // in places
+    bool counts;
   };
   std::vector<Flying> flying;
-  const size_t counted_from = filled ? order.size() / 2 : 0;
   size_t next = 0;
+  double counted = 0;
   TreeReads reads;
   while (next < order.size() || !flying.empty()) {
     while (flying.size() < in_flight && next < order.size()) {
       const size_t ray = order[next];
-      flying.push_back({next++, ray == 0 ? 0 : rays.ends[ray - 1], rays.ends[ray]});
+      const bool counts = rays.counts[rays.kinds[ray].tile];
+      flying.push_back({ray == 0 ? 0 : rays.ends[ray - 1], rays.ends[ray], counts});
+      counted += counts;
+      ++next;
     }
     for (size_t i = 0; i < flying.size();) {
       Flying& ray = flying[i];
@@ -81,7 +85,7 @@ TreeReads reads_a_ray(const ChipConfiguration& chip, const RayVisits& rays, cons
         continue;
       }
       const Visit& place = rays.places[ray.next++];
-      const bool counts = ray.number >= counted_from;
+      const bool counts = ray.counts;
       if (place.triangles == 0) {
         reads.nodes += !nodes.has(place.place) && counts;
       } else {
@@ -90,8 +94,7 @@ TreeReads reads_a_ray(const ChipConfiguration& chip, const RayVisits& rays, cons
       ++i;
     }
   }
-  if (order.empty()) return {};
-  const auto counted = static_cast<double>(order.size() - counted_from);
+  if (counted == 0) return {};
   return {reads.nodes / counted, reads.triangles / counted};
 }
 

@@ -27,6 +27,7 @@ struct RayVisits {
   VisitList places;
   std::vector<size_t> ends;  ///< in `places`, of each ray
   std::vector<RayKind> kinds;
+  std::vector<bool> counts;  ///< of each tile; rays of the others fill the caches
 };
 
 /// Lines read a ray.
@@ -37,6 +38,6 @@ struct TreeReads {
 /// in turn. `order`: in which rays come, by their kinds; those that it does not name come last. `filled`: the rays are
 /// of a larger frame, so that the first half of them fills the caches and is not counted.
 TreeReads reads_a_ray(const ChipConfiguration& chip, const RayVisits& rays, const std::vector<RayKind>& order,
-                      uint32_t in_flight, bool filled);
+                      uint32_t in_flight);
 
 }  // namespace raypool::estimate

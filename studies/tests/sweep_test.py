@@ -167,7 +167,7 @@ class Refusals(SweepTest):
             ("units", 3, "1, 2 or 4"),
             ("size", "8by8", "8by8"),
             ("size", "0x8", "0x8"),
-            ("engine", "spice", "native, functional, sampled, model, rtl or lockstep"),
+            ("engine", "spice", "native, estimate, functional, sampled, model, rtl or lockstep"),
             ("boundary", "chip", "engine model has no Verilog"),
             ("hits", "embree", "engine model has the hits of its traverser"),
             ("detail", 0, "detail"),
