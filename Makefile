@@ -57,11 +57,17 @@ given := $(if $(filter 0,$(MAKELEVEL)),$(filter-out $(TOOLS),$(call said,$(.VARI
 known := $(if $(given),$(shell grep -hoE '(^|  |export )[A-Z_]+ *[:?+]?=' Makefile $(STUDIES) | \
   sed -E 's/export//; s/[^A-Z_]//g'))
 unknown := $(firstword $(filter-out $(known),$(given)))
+# nearest WORD,WORDS: a question for the one that is like it.
+nearest = $(patsubst %,: did you mean %?,$(shell python3 -c \
+  'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' "$1" $2))
+LIST := (make help-all lists all)
 ifneq (,$(unknown))
-  near := $(shell python3 -c 'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' \
-    "$$(tr a-z- A-Z_ <<< '$(unknown)')" $(known))
-  $(error $(unknown) is no variable of this Makefile$(patsubst %,: did you mean %?,$(near)) (make help-all lists all))
+  $(error $(unknown) is no variable of this Makefile$(call \
+    nearest,$(shell tr a-z- A-Z_ <<< '$(unknown)'),$(known)) $(LIST))
 endif
+# So is a target, and so is what a target does not look at, where that would be another result.
+.DEFAULT:
+	@$(error there is no target $@$(call nearest,$@,$(shell sed -nE 's/^([a-z-]+):.*/\1/p' Makefile $(STUDIES))) $(LIST))
 
 #: variables of every target
 #:   ARGS="--option ..."           further options of what the target runs, as they are written
@@ -102,7 +108,8 @@ PYTHON := $(or $(wildcard /usr/bin/python3),python3)
 SYNTH := PYTHONPATH=scripts $(PYTHON) -m synth
 LIBRARY := MEMORIES LIBERTY CLOCK
 # Of synth, synth-replay and synth-prove.
-SYNTH_CHIP = $(if $(filter-out 0,$(CHIP)),--chip $(call options,CUS))
+SYNTH_CHIP = $(if $(filter-out 0,$(CHIP)),--chip $(call options,CUS),$(if $(call said,CUS),\
+  $(error CUS is for whole chips: make $@ CHIP=1 CUS=$(CUS), or leave it out, for a unit)))
 FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
 
 .PHONY: help help-all sim compare run cosim configurations faults unit test test-long lint format

@@ -143,6 +143,18 @@ class Values(unittest.TestCase):
         self.words("sim", "SET=warps=2 scne=3", "CXX=g++", "CMAKE_GENERATOR=Ninja")
         self.words("sim", "SCNE=room", MAKELEVEL="1")
 
+    def test_an_unknown_target_is_refused_with_the_nearest(self):
+        for word, name in (("sims", "sim"), ("symth", "synth"), ("help-al", "help-all")):
+            done = make(word, folder=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertIn(f"there is no target {word}: did you mean {name}? (make help-all", done.stderr)
+        self.assertIn("there is no target xyzzy (make", make("xyzzy", folder=self.folder).stderr)
+
+    def test_units_are_refused_where_one_is_synthesised(self):
+        done = make("synth", "CUS=2", folder=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("CUS is for whole chips: make synth CHIP=1 CUS=2, or leave it out", done.stderr)
+
 
 class Readme(unittest.TestCase):
     def test_it_is_one_screen(self):

@@ -21,7 +21,7 @@ namespace {
 constexpr uint32_t kPixels = 16384, kRuns = 16;
 constexpr int kRounds = 2;
 // How far 19 of 20 estimates are off at most, as a share of the true value: `make estimates` measures it.
-constexpr double kStaticError = 0.11, kHardwareError = 0.31, kLeastShareError = 0.01;
+constexpr double kStaticError = 0.14, kHardwareError = 0.33, kLeastShareError = 0.01;
 
 KernelTable kernel_costs(const Configuration& configuration) {
   const Program& program = ray_kernel_program(KernelTarget(configuration));

@@ -44,12 +44,12 @@ double UnitFlow::next() const {
 void UnitFlow::advance(double now, std::vector<Launch*>& ended) {
   clock_ += (now - now_) * rate_;
   now_ = now;
-  bool moved = true;
-  while (moved) {
+  bool any = false;
+  for (bool moved = true; moved; any |= moved) {
     moved = false;
     for (uint32_t number = 0; number < warps_.size(); ++number) moved |= move(number, ended);
   }
-  set_rate();
+  if (any) set_rate();
 }
 
 /// True if the warp goes on.
