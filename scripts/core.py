@@ -72,7 +72,9 @@ def main():
         if not CORE.exists() or CORE.read_text() != text:
             sys.exit("raypool.core does not fit rtl/: make isa writes it")
         return
-    CORE.write_text(text)
+    if not CORE.exists() or CORE.read_text() != text:
+        CORE.write_text(text)
+        print(f"wrote {CORE.name}")
 
 
 if __name__ == "__main__":

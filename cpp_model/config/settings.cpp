@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <sstream>
@@ -35,10 +36,19 @@ size_t distance_of_path(std::string_view given, std::string_view path) {
   return least;
 }
 
-/// Those with the least distance.
+/// As the Verilog names its parameters: DATA_CACHE_BYTES.
+std::string verilog_name(std::string path) {
+  for (char& letter : path)
+    letter = letter == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return path;
+}
+
+/// Those with the least distance; the one that has this name in the Verilog.
 std::vector<std::string> nearest_fields(std::string_view given) {
   std::vector<std::string> paths = {kName}, nearest;
   for (const ConfigurationField& field : fields()) paths.push_back(field.path);
+  for (const std::string& path : paths)
+    if (verilog_name(path) == given) return {path};
   size_t least = SIZE_MAX;
   for (const std::string& path : paths) {
     const size_t distance = distance_of_path(given, path);
@@ -69,6 +79,11 @@ std::vector<Assignment> assignments(const std::vector<std::string>& texts) {
   return all;
 }
 
+std::string with_blanks(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ' ');
+  return text;
+}
+
 Json parse_value(const ConfigurationField& field, const std::string& text) {
   int number = 0;
   const char* const end = text.data() + text.size();
@@ -95,6 +110,10 @@ Json parse_value(const ConfigurationField& field, const std::string& text) {
       for (std::string name; std::getline(names, name, ',');) list.push_back(name);
       return list;
     }
+  }
+  if (text.find(',') != std::string::npos && text.find('=') != std::string::npos) {
+    throw InputError(fmt::format("--set {}={}: put blanks between fields, not commas: \"{}={}\"", field.path, text,
+                                 field.path, with_blanks(text)));
   }
   throw InputError(fmt::format("--set {}={}: {} must be {}", field.path, text, field.path, text_of(field.range)));
 }

@@ -87,6 +87,17 @@ TEST(Settings, AnUnknownFieldNamesTheNearest) {
   EXPECT_EQ(settings_error({"colour=5"}), "--set: there is no field 'colour'; raypool config prints all");
 }
 
+TEST(Settings, AParameterOfTheVerilogNamesItsField) {
+  EXPECT_EQ(settings_error({"DATA_CACHE_BYTES=4096"}),
+            "--set: there is no field 'DATA_CACHE_BYTES': did you mean data_cache.bytes? (raypool config prints all)");
+}
+
+TEST(Settings, FieldsWithCommasBetweenAreToldApart) {
+  EXPECT_EQ(settings_error({"data_cache.bytes=4096,alus.flt.count=2"}),
+            "--set data_cache.bytes=4096,alus.flt.count=2: put blanks between fields, not commas: "
+            "\"data_cache.bytes=4096 alus.flt.count=2\"");
+}
+
 TEST(Settings, AMistypedNameNamesTheNearest) {
   EXPECT_EQ(settings_error({"chip.traverser=hardwre"}),
             "--set chip.traverser=hardwre: did you mean hardware? (it must be one of static, hardware)");

@@ -329,7 +329,9 @@ void UnitInspection::check_fetch() {
          : (refilled_ >> warp & 1) != 0
              ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_compute_unit.v"
              : "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_pc_stack.v, rtl/compute/rp_warp.v",
-         fmt::format("warp {} {} the instruction cache", warp, early ? "wants too early" : "does not want in time"));
+         early ? fmt::format("warp {} asks the instruction cache too early", warp)
+               : fmt::format("warp {} does not ask the instruction cache for PC {} in time", warp,
+                             model_->timing(warp).fetch_pc));
   }
 }
 

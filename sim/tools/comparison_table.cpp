@@ -77,6 +77,15 @@ void line(std::string& text, fmt::format_string<Arguments...> format, Arguments&
   text += '\n';
 }
 
+void estimates_line(std::string& text, const Json& estimates) {
+  if (estimates["a"].is_null() && estimates["b"].is_null()) return;
+  const auto error = [](const Json& share) {
+    return share.is_null() ? "exact" : fmt::format("+-{:.1f}%", 100 * share.get<double>());
+  };
+  line(text, "estimates A {}, B {} (of the cycles): a smaller change decides nothing, engine model does",
+       error(estimates["a"]), error(estimates["b"]));
+}
+
 void picture_line(std::string& text, const Json& picture) {
   if (!picture["compared"].get<bool>()) {
     line(text, "picture   not compared: {}", picture["reason"].get<std::string>());
@@ -141,6 +150,7 @@ std::string comparison_table(const Json& comparison) {
     }
   }
   line(text, "  and {} figures that are the same, {} others that differ: --json has them", same, others);
+  estimates_line(text, comparison["estimates"]);
   picture_line(text, comparison["picture"]);
   area_lines(text, comparison["area"]);
   return text;

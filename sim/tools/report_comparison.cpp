@@ -227,6 +227,13 @@ Report load_report(const std::string& path) {
   return report;
 }
 
+/// How far the figures of an estimate may be off, as a share of the cycles; null: they are exact.
+Json estimate_of(const Report& report) {
+  for (const char* estimates : {"estimated", "sampled"})
+    if (report.json.contains(estimates)) return report.json[estimates]["error"];
+  return nullptr;
+}
+
 Json compare_reports(const Report& a, const Report& b, const std::vector<std::string>& synthesis,
                      const std::string& map) {
   const std::vector<SynthesisReport> known = all_synthesis(synthesis);
@@ -234,6 +241,7 @@ Json compare_reports(const Report& a, const Report& b, const std::vector<std::st
           {"b", b.path},
           {"set_up", set_up(a, b)},
           {"results", results(a, b)},
+          {"estimates", {{"a", estimate_of(a)}, {"b", estimate_of(b)}}},
           {"picture", compare_pictures(a, b, map)},
           {"criterion", {{"off_by", kOffByMore}, {"most_off", kMostOff}}},
           {"area", {{"a", area(a, known)}, {"b", area(b, known)}}}};

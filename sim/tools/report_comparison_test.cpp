@@ -97,6 +97,20 @@ TEST(ReportComparison, ReportsWhatDiffersAndWhatThatDid) {
       << table;
 }
 
+TEST(ReportComparison, SaysHowFarEstimatesMayBeOff) {
+  const Folder folder;
+  folder.write("a/report.json", report_of(Configuration(), 1000, 0.5).dump());
+  Json estimate = report_of(Configuration(), 990, 0.5);
+  estimate["engine"] = "estimate";
+  estimate["estimated"] = {{"error", 0.143}};
+  folder.write("b/report.json", estimate.dump());
+  const auto table = [&](const std::string& a, const std::string& b) {
+    return comparison_table(compare_reports(load_report(folder.path(a)), load_report(folder.path(b)), {}));
+  };
+  EXPECT_NE(table("a", "b").find("estimates A exact, B +-14.3% (of the cycles)"), std::string::npos) << table("a", "b");
+  EXPECT_EQ(table("a", "a").find("estimates"), std::string::npos);
+}
+
 TEST(ReportComparison, ReportsFieldsThatNeitherMachineUses) {
   const Folder folder;
   const auto compared = [&](const std::vector<std::string>& a, const std::vector<std::string>& b) {
