@@ -117,5 +117,26 @@ TEST(LaunchFlow, IsNoFasterThanItsPorts) {
   EXPECT_EQ(flow.ray_port, 67 * flow.rays);
 }
 
+TEST(LaunchFlow, IsNoFasterThanAnAlu) {
+  Configuration configuration;
+  configuration.chip.traverser = TraverserName::Static;
+  configuration.alus[AluType::Flt].latency = 16;  // cycles a task
+  const KernelTable kernels = costs_on(configuration);
+  const Flow flow = flow_of(configuration, 1, alike(16, 1), kernels);
+  double busy = 0;
+  for (size_t i = 0; i < kRayKernels; ++i)
+    for (const Segment& segment : kernels[i].segments) busy += flow.warps[i] * segment.busy[AluType::Flt];
+  EXPECT_GE(flow.cycles, busy);
+}
+
+TEST(LaunchFlow, IsNoFasterThanThePipesOfTheTraverser) {
+  Configuration configuration;
+  configuration.chip.hardware_traverser_lanes = configuration.chip.hardware_traverser_triangle_pipes = 1;
+  Workload work = alike(16, 1);
+  for (TileWork& tile : work.tiles) tile.nodes = 200;
+  const Flow flow = flow_of(configuration, 4, work, costs_on(configuration));
+  EXPECT_GE(flow.cycles, 0.9 * 200 * flow.rays) << "ways of rays differ, so that the sum may be a little less";
+}
+
 }  // namespace
 }  // namespace raypool::estimate
