@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
+// What the bindings of a shader set hold: where buffers and textures lie in the unit's memory, and the words of uniform
+// blocks, which are known when the kernels are compiled. docs/use/shaders.md has the layouts.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace raypool::shader {
+
+/// Descriptor set and binding.
+using Place = std::pair<uint32_t, uint32_t>;
+
+/// A word of a uniform block or of push constants: its bits, or the number of the kernel argument that has them.
+struct Word {
+  uint32_t bits = 0;
+  std::optional<uint32_t> argument;
+};
+
+/// A storage buffer in the unit's memory.
+struct Buffer {
+  uint32_t address = 0;  ///< a multiple of 16
+  uint32_t bytes = 0;
+};
+
+/// Consecutive texture records of kTextureBytes in the unit's memory: what a sampler, or an array of them, stands for.
+struct Textures {
+  uint32_t address = 0;  ///< of the first record, a multiple of 32
+  uint32_t count = 0;
+};
+
+/// A texture record: address of the texels (a multiple of 64), width, height, wrap modes (words). Texel (x, y) is at
+/// address + 8 (y width + x): red, green, blue, alpha as 16 bits each, linear, 65535 is 1.
+inline constexpr uint32_t kTextureBytes = 16;
+inline constexpr uint32_t kTextureWrapS = 1;    ///< bits 1:0 of the wrap word: a Wrap
+inline constexpr uint32_t kTextureWrapTShift = 2;  ///< bits 3:2
+inline constexpr uint32_t kTextureNearest = 16;    ///< bit 4: no bilinear filter
+enum class Wrap : uint32_t { Repeat = 0, Clamp = 1, Mirror = 2 };
+
+struct Resources {
+  std::map<Place, Buffer> buffers;
+  std::map<Place, std::vector<Word>> blocks;  ///< uniform blocks, by word of their layout
+  std::map<Place, Textures> textures;
+  std::vector<Word> push_constants;
+  std::map<uint32_t, uint32_t> specialization;  ///< constant_id -> bits
+  uint32_t saved = 0;                           ///< address of what kernels save of their paths; 0: no room was made
+  uint32_t width = 0, height = 0;               ///< of the picture, pixels
+};
+
+}  // namespace raypool::shader

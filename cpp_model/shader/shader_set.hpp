@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
+// A folder of ray-tracing shaders, and the ray kernels that they become. docs/use/shaders.md says what is supported.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "enum_array.hpp"
+#include "kernel/intermediate.hpp"
+#include "kernel/target.hpp"
+#include "machine/chip/ray_kernel.hpp"
+#include "shader/resources.hpp"
+
+namespace raypool::shader {
+
+/// What a binding of the set is declared as.
+enum class BindingKind : uint8_t { Tree, Picture, Block, Buffer, Textures };
+
+/// A member of a uniform block or of the push constants: scalars, vectors and matrices of floats or 32-bit integers, and
+/// arrays of them.
+struct Member {
+  std::string name;
+  uint32_t offset = 0;  ///< bytes
+  uint32_t rows = 1, columns = 1, elements = 1;
+  uint32_t row_stride = 4, column_stride = 0, element_stride = 0;  ///< bytes; a vector is a column
+  bool is_float = true;
+};
+
+struct Binding {
+  Place place;
+  std::string name;  ///< of the variable, or of its block where the variable has none
+  BindingKind kind = BindingKind::Buffer;
+  std::vector<Member> members;  ///< of a Block
+  uint32_t bytes = 0;           ///< of a Block, or of the sized part of a Buffer
+};
+
+/// Throws InputError, with file and line where they are known, for what cannot be done.
+class ShaderSet {
+ public:
+  /// A folder with one .rgen, one .rchit and at most one .rmiss file, each in GLSL or as SPIR-V (.rgen.spv ...).
+  static std::shared_ptr<const ShaderSet> load(const std::string& folder);
+  virtual ~ShaderSet() = default;
+
+  virtual const std::string& folder() const = 0;
+  /// Those that a shader of the set uses, each once.
+  virtual const std::vector<Binding>& bindings() const = 0;
+  virtual const std::vector<Member>& push_constants() const = 0;
+  /// The ray kernels, not yet compiled. CastSecondaryDirect is the closest-hit shader without rays that go on.
+  virtual EnumArray<RayKernel, kernel::Function, kRayKernels> record(const Resources& resources,
+                                                                     const KernelTarget& target) const = 0;
+};
+
+}  // namespace raypool::shader
