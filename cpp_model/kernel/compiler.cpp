@@ -92,6 +92,7 @@ void compile(Function function, Program& program, const KernelTarget& target) {
   std::vector<std::pair<size_t, int>> jumps;  // instruction, label
   std::vector<uint32_t> label_at(function.labels, 0);
   for (const Op& op : function.ops) {
+    if (op.kind == Op::Kind::Undefined) continue;
     if (op.kind != Op::Kind::Instruction) {
       label_at[op.label] = entry + size32(code);
       continue;

@@ -12,6 +12,10 @@ std::string to_string(const Location& location) {
 
 Effects effects(const Op& op) {
   Effects result;
+  if (op.kind == Op::Kind::Undefined) {
+    result.register_defined = op.rd;
+    result.registers_defined = 1;
+  }
   if (op.kind != Op::Kind::Instruction) return result;
   size_t registers = 0;
   int predicates = 0;

@@ -38,7 +38,8 @@ struct Guard {
 inline constexpr int kNothing = -1;
 
 struct Op {
-  enum class Kind : uint8_t { Instruction, Label, LoopEnd };
+  /// Undefined: rd is a register in which nothing is held yet.
+  enum class Kind : uint8_t { Instruction, Label, LoopEnd, Undefined };
   Kind kind = Kind::Instruction;
   const InstructionInfo* info = nullptr;
   Guard guard;

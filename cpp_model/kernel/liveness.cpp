@@ -9,7 +9,7 @@ std::vector<std::vector<size_t>> find_successors(const Function& function) {
   std::vector<size_t> label_at(function.labels, 0);
   std::vector<size_t> loop_at(function.labels, 0);
   for (size_t i = 0; i < ops.size(); ++i) {
-    if (ops[i].kind != Op::Kind::Instruction)
+    if (ops[i].kind == Op::Kind::Label || ops[i].kind == Op::Kind::LoopEnd)
       label_at[ops[i].label] = i;
     else if (is(ops[i], Opcode::Loop))
       loop_at[ops[i].label] = i;

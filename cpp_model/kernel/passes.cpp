@@ -77,7 +77,10 @@ std::optional<Opcode> exchanged(Opcode opcode) {
   }
 }
 
-bool ends_block(const Op& op) { return op.kind != Op::Kind::Instruction || op.info->kind == Kind::Control; }
+bool ends_block(const Op& op) {
+  if (op.kind == Op::Kind::Undefined) return false;
+  return op.kind != Op::Kind::Instruction || op.info->kind == Kind::Control;
+}
 
 /// Needs no register: its value can be made anywhere before its use.
 bool is_leaf(const Op& op) {

@@ -50,7 +50,7 @@ Op& Recorder::emit(Opcode opcode, const Location& where) {
   Op op;
   op.info = &instruction(opcode);
   op.guard = guard_;
-  op.where = last_ = where;
+  op.where = last_ = place_.line != 0 ? place_ : where;
   function_.ops.push_back(op);
   return function_.ops.back();
 }
@@ -153,6 +153,30 @@ void Recorder::assign_predicate(int variable, int source, bool temporary) {
 int Recorder::materialise(const Condition& condition) {
   return condition.negated ? emit_predicates(Opcode::Pandn, 0, condition.predicate, condition.where)
                            : emit_predicates(Opcode::Pand, condition.predicate, condition.predicate, condition.where);
+}
+
+int Recorder::declare_register() {
+  const int number = new_register();
+  Op op;
+  op.kind = Op::Kind::Undefined;
+  op.rd = number;
+  op.fresh = true;
+  op.where = last_;
+  function_.ops.push_back(op);
+  return number;
+}
+
+int Recorder::declare_predicate() { return emit_predicates(Opcode::Pxor, 0, 0, last_); }
+
+void Recorder::join(int predicate) {
+  const int mask = guard_.all()      ? 0
+                   : guard_.negated ? emit_predicates(Opcode::Pand, 0, 0, last_)
+                                    : guard_.predicate;
+  const Guard guard = guard_;
+  guard_ = {};
+  emit_predicates(Opcode::Por, predicate, mask, last_);
+  function_.ops.back().rd = predicate;
+  guard_ = guard;
 }
 
 Guard Recorder::mask_for(const Condition& condition) {

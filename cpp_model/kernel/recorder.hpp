@@ -54,6 +54,15 @@ class Recorder {
   /// A predicate that equals the condition within the current mask.
   int materialise(const Condition& condition);
 
+  /// A register that holds nothing yet.
+  int declare_register();
+  /// A predicate that no lane of the current mask has.
+  int declare_predicate();
+  /// Lanes of the current mask get the predicate, which others keep.
+  void join(int predicate);
+  /// From here on every operation is recorded as of this line; {}: as of its own.
+  void set_place(const Location& place) { place_ = place; }
+
   /// Statements: begin, body, end. `Else` may follow a then-body.
   void begin_if(const Condition& condition);
   void begin_else();
@@ -87,7 +96,7 @@ class Recorder {
   std::vector<Guard> register_masks_;   // mask under which a virtual register was declared
   std::vector<Guard> predicate_masks_;  // mask outside which a virtual predicate is 0
   std::vector<Block> blocks_;
-  Location last_;
+  Location last_, place_;
 };
 
 }  // namespace raypool::kernel
