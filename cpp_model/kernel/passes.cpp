@@ -97,7 +97,7 @@ bool blocks_leaf(const Op& leaf, const Op& op) {
   for (const int used : effect.register_uses) {
     if (used == leaf.rd) return true;
   }
-  if (!is(leaf, Opcode::Rld)) return false;
+  if (!is(leaf, Opcode::Rld) || op.kind == Op::Kind::Undefined) return false;
   return op.info->kind == Kind::Swap || (is(op, Opcode::Rst) && op.word == leaf.word);
 }
 

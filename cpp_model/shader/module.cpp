@@ -200,6 +200,7 @@ void Module::read(const std::vector<uint32_t>& words, const std::map<uint32_t, u
     if (has_type) line.type = operands.at(first++);
     if (has_result) line.id = operands.at(first++);
     line.operands.assign(operands.begin() + static_cast<std::ptrdiff_t>(first), operands.end());
+    if (line.type != 0) types_of_values_[line.id] = line.type;
     if (functions == 0) {
       if (op == spv::Op::OpVariable) {
         variables_[line.id] = {line.type, static_cast<spv::StorageClass>(line.operands.at(0)),
@@ -510,6 +511,11 @@ const Block& Module::block(uint32_t label) const {
   const auto found = block_at_.find(label);
   if (found == block_at_.end()) fail({}, "the SPIR-V branches to a block that it does not have: make it again");
   return blocks_[found->second];
+}
+
+uint32_t Module::type_of(uint32_t id) const {
+  const auto found = types_of_values_.find(id);
+  return found == types_of_values_.end() ? 0 : found->second;
 }
 
 uint32_t Module::uses(uint32_t id) const {

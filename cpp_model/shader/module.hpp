@@ -98,6 +98,8 @@ class Module {
   const std::map<uint32_t, Variable>& variables() const { return variables_; }
   /// Constants and undefined values at the module's level, in order.
   const std::vector<Line>& constants() const { return constants_; }
+  /// Of a value; 0: it has none.
+  uint32_t type_of(uint32_t id) const;
   /// The bits of a scalar constant; nothing for another id.
   std::optional<uint32_t> constant(uint32_t id) const;
   const std::vector<Block>& blocks() const { return blocks_; }
@@ -137,7 +139,7 @@ class Module {
   std::vector<Block> blocks_;
   std::unordered_map<uint32_t, size_t> block_at_;
   std::map<uint32_t, Line> locals_;
-  std::unordered_map<uint32_t, uint32_t> uses_;
+  std::unordered_map<uint32_t, uint32_t> uses_, types_of_values_;
 };
 
 /// A name that lives as long as the program, as places in kernels need it.

@@ -12,6 +12,7 @@
 #include "kernel/intermediate.hpp"
 #include "kernel/target.hpp"
 #include "machine/chip/ray_kernel.hpp"
+#include "machine/common/packages.hpp"
 #include "shader/resources.hpp"
 
 namespace raypool::shader {
@@ -40,7 +41,7 @@ struct Binding {
 /// Throws InputError, with file and line where they are known, for what cannot be done.
 class ShaderSet {
  public:
-  /// A folder with one .rgen, one .rchit and at most one .rmiss file, each in GLSL or as SPIR-V (.rgen.spv ...).
+  /// A folder, or the name of one in shaders/, with one .rgen, one .rchit and at most one .rmiss file, each in GLSL or as SPIR-V (.rgen.spv ...).
   static std::shared_ptr<const ShaderSet> load(const std::string& folder);
   virtual ~ShaderSet() = default;
 
@@ -48,9 +49,14 @@ class ShaderSet {
   /// Those that a shader of the set uses, each once.
   virtual const std::vector<Binding>& bindings() const = 0;
   virtual const std::vector<Member>& push_constants() const = 0;
-  /// The ray kernels, not yet compiled. CastSecondaryDirect is the closest-hit shader without rays that go on.
+  /// The ray kernels, not yet compiled. CastSecondaryDirect is the closest-hit shader without rays that go on. `layout`:
+  /// of the intersections that they import.
   virtual EnumArray<RayKernel, kernel::Function, kRayKernels> record(const Resources& resources,
-                                                                     const KernelTarget& target) const = 0;
+                                                                     const KernelTarget& target,
+                                                                     const RecordLayout& layout) const = 0;
+  auto record(const Resources& resources, const KernelTarget& target) const {
+    return record(resources, target, RecordLayout{});
+  }
 };
 
 }  // namespace raypool::shader

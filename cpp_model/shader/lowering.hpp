@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
+// A shader becomes intermediate code of the kernel compiler. Blocks of SPIR-V become code under masks: each construct is
+// recorded once, in order, and a lane that leaves it early is masked out until the place that it has gone to.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "kernel/kernel.hpp"
+#include "machine/chip/ray_kernel.hpp"
+#include "shader/module.hpp"
+#include "shader/values.hpp"
+
+namespace raypool::shader {
+
+/// Which of the ray kernels a shader becomes. Throws InputError with file and line for what cannot be done.
+/// `layout`: of the intersections that it imports.
+kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel,
+                       const KernelTarget& target, const RecordLayout& layout = {});
+
+/// How rays leave a kernel, at most, of a thread.
+struct RayLimits {
+  int normal = 0, shadow = 0;
+};
+
+class Lowering {
+ public:
+  Lowering(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
+           const RecordLayout& layout);
+  kernel::Function run();
+
+ private:
+  using RecordedInt = kernel::RecordedKernel::Int;
+  using RecordedFloat = kernel::RecordedKernel::Float;
+  using RecordedBool = kernel::RecordedKernel::Bool;
+
+  // lowering_control.cpp: blocks
+  struct Flow {
+    std::set<uint32_t> leaves;  // labels of outer constructs to which lanes go
+    bool falls = false;         // lanes arrive at the end
+  };
+  static constexpr uint32_t kEnd = 0;  // of main()
+  Flow flow(uint32_t label, uint32_t stop);
+  Flow flow_of_loop(const Block& header);
+  Flow flow_of_switch(const Block& header);
+  void region(uint32_t label, uint32_t stop);
+  void lines(const Block& block);
+  void selection(const Block& block, uint32_t stop);
+  void unmerged_branch(const Block& block, uint32_t stop);
+  void loop(const Block& header, uint32_t stop);
+  void switch_over(const Block& header, uint32_t stop);
+  /// Lanes of the mask go from one block to another: phis and masks.
+  void edge(uint32_t from, uint32_t to);
+  void go(uint32_t from, uint32_t to, uint32_t stop);
+  bool is_open(uint32_t label) const;
+  bool has_phis(uint32_t label) const { return label != kEnd && !module_.block(label).phis.empty(); }
+  void declare_phis(uint32_t label);
+  void select_phis(const Block& merge, const Scalar& condition, uint32_t from_then, uint32_t from_else);
+  Value incoming(const Line& phi, uint32_t from);
+  void continue_at(uint32_t merge, uint32_t stop, bool masked);
+  size_t predecessors(uint32_t label) const;
+  template <typename Body>
+  void under(const Scalar& condition, const Body& body);
+
+  // lowering_values.cpp: scalars
+  Value get(uint32_t id);
+  Scalar get_scalar(uint32_t id) { return get(id).at(0); }
+  void set(const Line& line, Value value);
+  int reg(const Scalar& scalar);
+  int predicate(const Scalar& scalar);
+  kernel::Condition condition(const Scalar& scalar);
+  RecordedInt as_int(const Scalar& scalar);
+  RecordedFloat as_float(const Scalar& scalar);
+  RecordedBool as_bool(const Scalar& scalar);
+  Scalar of(const RecordedInt& value) { return Scalar::in_register(value.number()); }
+  Scalar of(const RecordedFloat& value) { return Scalar::in_register(value.number()); }
+  Scalar of(const RecordedBool& value) { return Scalar::in_predicate(value.number()); }
+  Scalar binary(Opcode opcode, const Scalar& a, const Scalar& b);
+  Scalar compare(Opcode opcode, const Scalar& a, const Scalar& b);
+  Scalar unary(Opcode opcode, const Scalar& a);
+  Scalar immediate(Opcode opcode, const Scalar& a, uint32_t bits);
+  Scalar multiply_add(const Scalar& a, const Scalar& b, const Scalar& c);
+  Scalar negate(const Scalar& a) { return immediate(Opcode::Xor, a, 0x80000000u); }
+  Scalar select(const Scalar& condition, const Scalar& a, const Scalar& b);
+  Scalar both(const Scalar& a, const Scalar& b);
+  Scalar either(const Scalar& a, const Scalar& b);
+  static Scalar inverse(Scalar a);
+  Scalar copy(const Scalar& a);
+  void assign(Scalar& variable, const Scalar& source);
+  Scalar declare(bool is_condition);
+  bool is_condition(uint32_t type, uint32_t scalar) const;
+  Scalar narrowed(uint32_t type, const Scalar& value);
+  Scalar narrowed_result(const Line& line, const Scalar& value);
+  static uint32_t log2_of(uint32_t power);
+  uint32_t type_of(uint32_t id) const { return module_.type_of(id); }
+
+  // lowering_operations.cpp: what lines compute
+  void operation(const Line& line);
+  bool arithmetic(const Line& line);
+  bool conversion(const Line& line);
+  bool comparison(const Line& line);
+  bool logic(const Line& line);
+  bool composite(const Line& line);
+  bool matrix(const Line& line);
+  void glsl(const Line& line);
+  std::optional<Value> glsl_of_floats(const Line& line, const std::vector<Value>& a);
+  std::optional<Value> glsl_of_integers(const Line& line, const std::vector<Value>& a);
+  std::optional<Value> glsl_of_vectors(const Line& line, const std::vector<Value>& a);
+  Value add(const Line& line, const Value& a, const Value& b);
+  Scalar dot(const Value& a, const Value& b);
+  Value dynamic_part(const Value& whole, uint32_t part_scalars, const Scalar& index);
+  void product(const Line& line);
+  bool is_fused_later(const Line& line) const;
+
+  // lowering_memory.cpp: pointers
+  void begin_variables();
+  void access(const Line& line);
+  void load(const Line& line);
+  void store(const Line& line);
+  Value load_from(const Pointer& pointer);
+  void store_to(const Pointer& pointer, const Value& value);
+  Value chosen_part(const Value& whole, const Pointer& pointer, size_t depth, uint32_t offset, uint32_t size);
+  void store_chosen(Value& whole, const Pointer& pointer, size_t depth, uint32_t offset, const Value& value);
+  Pointer pointer_of(uint32_t id);
+  Pointer global(uint32_t id, const Variable& variable);
+  void step_into(Pointer& pointer, uint32_t index_id);
+  /// Calls leaf(offset in bytes) for each scalar of a type in memory.
+  template <typename Leaf>
+  void for_each_scalar(uint32_t type, uint32_t offset, uint32_t component_stride, uint32_t column_stride,
+                       const Leaf& leaf);
+  /// A register's value and what is added to it, in bytes.
+  std::pair<Scalar, uint32_t> address(const Pointer& pointer);
+  Scalar word_scalar(const Word& word);
+  Value read_words(const Pointer& pointer);
+  Scalar scaled(const Scalar& index, uint32_t stride);
+  const Value& variable(uint32_t id);
+  void sample(const Line& line);
+  void fetch(const Line& line);
+  void query_size(const Line& line);
+
+  // lowering_rays.cpp: what comes and leaves
+  Value built_in(uint32_t number, uint32_t type);
+  Value hit_attribute(uint32_t type);
+  void load_payload(uint32_t id, const Variable& variable);
+  void trace(const Line& line);
+  void write_picture(const Line& line);
+  void put_word(int number, const Scalar& value);
+  void put_payload(uint32_t id, bool shadow);
+  void check_not_given_away(uint32_t id) const;
+  std::vector<std::pair<int, bool>> payload_words(uint32_t type) const;
+
+  [[noreturn]] void fail(const std::string& what) const { module_.fail(where_, what); }
+
+  const Module& module_;
+  const Resources& resources_;
+  RayKernel kernel_;
+  kernel::Recorder recorder_;
+  kernel::RecordedKernel k_;
+  kernel::Location where_;
+
+  std::unordered_map<uint32_t, Value> values_;
+  std::unordered_map<uint32_t, Pointer> pointers_;
+  std::unordered_map<uint32_t, Value> variables_;
+  struct Product {
+    Value a, b;
+  };
+  std::unordered_map<uint32_t, Product> products_;  // multiplications that wait for the addition that takes them in
+  std::unordered_map<uint32_t, std::pair<Scalar, bool>> images_;  // texture record's address; or the picture
+  std::unordered_map<uint32_t, Value> phis_;        // declared ones
+  std::map<uint32_t, int> reach_;                   // of labels: predicate of the lanes that have gone there
+  std::vector<uint32_t> open_;                      // labels that lanes may go to early
+  uint32_t current_ = 0;                            // block whose lines are recorded, or were last
+  int loops_ = 0;
+  std::set<uint32_t> written_;                      // variables
+  std::optional<Scalar> pixel_, flags_;             // words of the ray that has come
+  bool tag_came_ = false;                           // with it
+  std::set<uint32_t> given_away_;  // payloads that a ray has taken with it
+  RayLimits cast_;                 // on the way here
+};
+
+}  // namespace raypool::shader

@@ -1,0 +1,326 @@
+// What a kernel imports, and the rays and contributions that leave it.
+#include <fmt/format.h>
+
+#include "bits.hpp"
+#include "kernel/kernels.hpp"
+#include "shader/lowering.hpp"
+
+namespace raypool::shader {
+namespace {
+
+constexpr uint32_t kTagShift = 8, kTagMask = 0xffff;
+constexpr int kPayloadWords = 3;
+
+constexpr uint32_t kTerminateOnFirstHit = 4, kSkipClosestHit = 8;
+constexpr uint32_t kOpaque = 1, kCullNoOpaque = 128;  // all triangles are opaque
+
+std::string stage_name(RayKernel kernel) {
+  switch (kernel) {
+    case RayKernel::CastEye:
+      return "ray generation";
+    case RayKernel::Shade:
+      return "miss";
+    default:
+      return "closest hit";
+  }
+}
+
+}  // namespace
+
+kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel,
+                       const KernelTarget& target, const RecordLayout& layout) {
+  return Lowering(module, resources, kernel, target, layout).run();
+}
+
+Lowering::Lowering(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
+                   const RecordLayout& layout)
+    : module_(module),
+      resources_(resources),
+      kernel_(kernel),
+      recorder_(std::string(kRayKernelNames[kernel]), target.fma),
+      k_(recorder_, target.culling, layout),
+      where_{lasting(module.name()), 1} {
+  recorder_.set_place(where_);
+}
+
+kernel::Function Lowering::run() {
+  for (const Line& line : module_.constants()) {
+    where_ = line.where;
+    const auto bits = module_.constant(line.id);
+    if (bits) {
+      set(line, {Scalar::constant(*bits)});
+    } else if (line.op == spv::Op::OpConstantNull) {
+      set(line, Value(module_.scalars(line.type), Scalar::constant(0)));
+    } else if (line.op == spv::Op::OpUndef) {
+      set(line, Value(module_.scalars(line.type)));
+    } else {
+      Value value;
+      for (const uint32_t part : line.operands) {
+        const Value its = get(part);
+        value.insert(value.end(), its.begin(), its.end());
+      }
+      set(line, value);
+    }
+  }
+  const uint32_t entry = module_.blocks().front().label;
+  where_ = {lasting(module_.name()), 1};
+  recorder_.set_place(where_);
+  if (kernel_ != RayKernel::CastEye) {
+    k_.ray_in();
+    pixel_ = of(k_.int_word(word::kPixel));
+    flags_ = of(k_.int_word(word::kFlags));
+    begin_variables();
+    region(entry, kEnd);
+    return recorder_.finish();
+  }
+  // Thread and block both become x | y << 16: their sum is the pixel.
+  const Scalar thread = of(k_.thread());
+  const Scalar x = binary(Opcode::And, thread, of(k_.int_argument(argument::kTileMask)));
+  const Scalar row = binary(Opcode::Shr, thread, of(k_.int_argument(argument::kTileWidthLog2)));
+  const Scalar corner = of(k_.block());
+  pixel_ = binary(Opcode::Iadd, binary(Opcode::Iadd, x, immediate(Opcode::Shl, row, 16)), corner);
+  const Scalar in_row = compare(Opcode::Ult, immediate(Opcode::And, *pixel_, 0xffff),
+                                Scalar::constant(resources_.width));
+  const Scalar in_picture = compare(Opcode::Ult, immediate(Opcode::Shr, *pixel_, 16),
+                                    Scalar::constant(resources_.height));
+  under(both(in_row, in_picture), [&] {
+    begin_variables();
+    region(entry, kEnd);
+  });
+  return recorder_.finish();
+}
+
+Value Lowering::built_in(uint32_t number, uint32_t type) {
+  const auto words = [&](int first, int count) {
+    Value value;
+    for (int i = 0; i < count; ++i) value.push_back(of(k_.int_word(first + i)));
+    return value;
+  };
+  const auto only = [&](bool fits, const char* name) {
+    if (!fits) fail(fmt::format("{} has no value in a {} shader", name, stage_name(kernel_)));
+  };
+  const bool has_ray = kernel_ != RayKernel::CastEye;
+  const bool has_hit = has_ray && kernel_ != RayKernel::Shade;
+  switch (static_cast<spv::BuiltIn>(number)) {
+    case spv::BuiltIn::LaunchIdKHR: {
+      Scalar x = immediate(Opcode::And, *pixel_, 0xffff), y = immediate(Opcode::Shr, *pixel_, 16);
+      x.part = Scalar::Part::PixelX;
+      y.part = Scalar::Part::PixelY;
+      return {x, y, Scalar::constant(0)};
+    }
+    case spv::BuiltIn::LaunchSizeKHR:
+      return {Scalar::constant(resources_.width), Scalar::constant(resources_.height), Scalar::constant(1)};
+    case spv::BuiltIn::WorldRayOriginKHR:
+    case spv::BuiltIn::ObjectRayOriginKHR:
+      only(has_ray, "gl_WorldRayOriginEXT");
+      return words(word::kOrigin, 3);
+    case spv::BuiltIn::WorldRayDirectionKHR:
+    case spv::BuiltIn::ObjectRayDirectionKHR:
+      only(has_ray, "gl_WorldRayDirectionEXT");
+      return words(word::kDirection, 3);
+    case spv::BuiltIn::RayTminKHR:
+      return {Scalar::constant(0)};
+    case spv::BuiltIn::RayTmaxKHR:
+      only(has_ray, "gl_RayTmaxEXT");
+      return words(has_hit ? word::kDistance : word::kLimit, 1);
+    case spv::BuiltIn::PrimitiveId:
+      only(has_hit, "gl_PrimitiveID");
+      return words(word::kTriangle, 1);
+    case spv::BuiltIn::InstanceId:
+    case spv::BuiltIn::InstanceCustomIndexKHR:
+    case spv::BuiltIn::RayGeometryIndexKHR:
+      return {Scalar::constant(0)};  // the scene is one mesh
+    case spv::BuiltIn::HitKindKHR: {
+      only(has_hit, "gl_HitKindEXT");
+      const Scalar back = compare(Opcode::Fgt, dot(words(word::kDirection, 3), words(word::kNormal, 3)),
+                                  Scalar::constant(0));
+      return {select(back, Scalar::constant(0xff), Scalar::constant(0xfe))};
+    }
+    case spv::BuiltIn::IncomingRayFlagsKHR:
+      return {Scalar::constant(kernel_ == RayKernel::Shade ? kTerminateOnFirstHit | kSkipClosestHit : 0)};
+    case spv::BuiltIn::ObjectToWorldKHR:
+    case spv::BuiltIn::WorldToObjectKHR: {
+      const uint32_t columns = module_.type(type).count, rows = module_.scalars(type) / columns;
+      Value value;
+      for (uint32_t c = 0; c < columns; ++c)
+        for (uint32_t r = 0; r < rows; ++r) value.push_back(Scalar::constant(r == c ? as_bits(1.0f) : 0));
+      return value;
+    }
+    default:
+      fail(fmt::format("built-in variable {} is not supported", number));
+  }
+}
+
+/// vec2 barycentrics, and of a larger struct: vec3 normal, uint material, uint depth.
+Value Lowering::hit_attribute(uint32_t type) {
+  const uint32_t size = module_.scalars(type);
+  if (kernel_ == RayKernel::CastEye || kernel_ == RayKernel::Shade)
+    fail(fmt::format("a {} shader has no hit attributes", stage_name(kernel_)));
+  constexpr uint32_t kMost = 7;
+  if (size > kMost) {
+    fail(fmt::format("hit attributes of {} words: a hit has barycentrics (vec2), normal (vec3), material (uint) and "
+                     "depth (uint), in this order",
+                     size));
+  }
+  Value value;
+  for (uint32_t i = 0; i < size; ++i) {
+    value.push_back(i + 1 < kMost ? of(k_.int_word(word::kBarycentric + static_cast<int>(i)))
+                                  : immediate(Opcode::And, *flags_, kDepthMask));
+  }
+  return value;
+}
+
+/// Of each scalar of a payload: its word of the ray, or that it is the tag.
+std::vector<std::pair<int, bool>> Lowering::payload_words(uint32_t type) const {
+  std::vector<std::pair<int, bool>> words;
+  int next = 0;
+  bool has_tag = false;
+  const auto visit = [&](const auto& self, uint32_t id) -> void {
+    const Type& its = module_.type(id);
+    switch (its.kind) {
+      case TypeKind::Struct:
+        for (const uint32_t member : its.members) self(self, member);
+        return;
+      case TypeKind::Vector:
+      case TypeKind::Matrix:
+      case TypeKind::Array:
+        for (uint32_t i = 0; i < its.count; ++i) self(self, its.element);
+        return;
+      case TypeKind::Int:
+        if (its.bits == 16) {
+          if (has_tag) fail("a payload has two 16-bit integers, and a ray carries one: pack them into one");
+          has_tag = true;
+          words.emplace_back(0, true);
+          return;
+        }
+        break;
+      case TypeKind::Float:
+        break;
+      default:
+        fail("a payload holds floats and integers alone: carry a condition as a uint");
+    }
+    words.emplace_back(word::kColor + next++, false);
+  };
+  visit(visit, type);
+  if (next > kPayloadWords) {
+    fail(fmt::format("a payload has {} words, and a ray carries {} and a uint16_t: carry less, or compute it again from "
+                     "the hit",
+                     next, kPayloadWords));
+  }
+  return words;
+}
+
+void Lowering::load_payload(uint32_t id, const Variable& variable) {
+  const uint32_t type = module_.type(variable.type).element;
+  Value value;
+  for (const auto& [number, is_tag] : payload_words(type)) {
+    if (!is_tag) {
+      value.push_back(of(k_.int_word(number)));
+      continue;
+    }
+    value.push_back(immediate(Opcode::And, immediate(Opcode::Shr, *flags_, kTagShift), kTagMask));
+    tag_came_ = true;
+  }
+  variables_[id] = value;
+}
+
+void Lowering::check_not_given_away(uint32_t id) const {
+  if (given_away_.count(id) == 0) return;
+  fail(fmt::format("payload '{}' is read after traceRayEXT, but a ray takes its payload along and the shader ends: add "
+                   "to the picture in the shaders that the ray comes to",
+                   module_.name_of(id)));
+}
+
+void Lowering::put_word(int number, const Scalar& value) {
+  if (!value.is_undefined()) k_.set_word(number, as_int(value));
+}
+
+void Lowering::trace(const Line& line) {
+  if (kernel_ == RayKernel::Shade) fail("a miss shader traces a ray: trace it in the closest-hit shader");
+  if (loops_ > 0) fail("traceRayEXT is called in a loop: a thread casts one ray on and one shadow ray, outside of loops");
+  const Scalar flags = get_scalar(line.operands.at(1));
+  if (!flags.is_constant()) fail("the ray flags are computed: give traceRayEXT constant flags");
+  constexpr uint32_t kShadow = kTerminateOnFirstHit | kSkipClosestHit;
+  if ((flags.bits & ~(kShadow | kOpaque | kCullNoOpaque)) != 0) {
+    fail(fmt::format("ray flags {:#x}: of them only gl_RayFlagsOpaqueEXT, and gl_RayFlagsTerminateOnFirstHitEXT with "
+                     "gl_RayFlagsSkipClosestHitShaderEXT are supported",
+                     flags.bits));
+  }
+  const bool shadow = (flags.bits & kShadow) == kShadow;
+  if (!shadow && (flags.bits & kShadow) != 0) {
+    fail("gl_RayFlagsTerminateOnFirstHitEXT and gl_RayFlagsSkipClosestHitShaderEXT go together here: a ray looks for the "
+         "closest hit, or asks whether it meets anything");
+  }
+  int& count = shadow ? cast_.shadow : cast_.normal;
+  if (shadow && kernel_ == RayKernel::CastEye)
+    fail("a ray generation shader traces a shadow ray: trace it in the closest-hit shader");
+  if (++count > 1) {
+    fail(fmt::format("a thread traces a second {}: it may cast one that looks for the closest hit and one shadow ray",
+                     shadow ? "shadow ray" : "ray that looks for the closest hit"));
+  }
+  const uint32_t payload = line.operands.at(10);
+  const bool leaves = shadow || kernel_ != RayKernel::CastSecondaryDirect;
+  if (leaves) {
+    Value origin = get(line.operands.at(6));
+    const Value direction = get(line.operands.at(8));
+    const Scalar least = get_scalar(line.operands.at(7));
+    Scalar most = get_scalar(line.operands.at(9));
+    if (!least.is_constant() || (least.bits & 0x7fffffffu) != 0) {
+      // The ray begins where it may first hit.
+      for (size_t i = 0; i < 3; ++i) origin[i] = multiply_add(direction[i], least, origin[i]);
+      most = binary(Opcode::Fsub, most, least);
+    }
+    for (int i = 0; i < 3; ++i) put_word(word::kOrigin + i, origin[static_cast<size_t>(i)]);
+    for (int i = 0; i < 3; ++i) put_word(word::kDirection + i, direction[static_cast<size_t>(i)]);
+    put_word(word::kLimit, most);
+    put_word(word::kPixel, *pixel_);
+    put_payload(payload, shadow);
+    k_.ray_out();
+  }
+  given_away_.insert(payload);
+}
+
+void Lowering::put_payload(uint32_t id, bool shadow) {
+  const auto known = module_.variables().find(id);
+  if (known == module_.variables().end()) fail("the payload of a ray must be a variable of the shader");
+  const uint32_t type = module_.type(known->second.type).element;
+  const Value& value = variable(id);
+  const auto words = payload_words(type);
+  Scalar tag = Scalar::constant(0);
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (words[i].second)
+      tag = value[i];
+    else
+      put_word(words[i].first, value[i]);
+  }
+  Scalar flags = Scalar::constant(1);
+  if (flags_) flags = tag_came_ ? immediate(Opcode::And, *flags_, kDepthMask) : *flags_;
+  if (flags_ && !shadow) flags = immediate(Opcode::Iadd, flags, 1);
+  if (shadow) flags = immediate(Opcode::Or, flags, kShadowFlag);
+  if (!tag.is_undefined()) {
+    const Scalar narrow = immediate(Opcode::And, tag, kTagMask);
+    flags = binary(Opcode::Or, immediate(Opcode::Shl, narrow, kTagShift), flags);
+  }
+  put_word(word::kFlags, flags);
+}
+
+void Lowering::write_picture(const Line& line) {
+  const auto image = images_.find(line.operands.at(0));
+  if (image == images_.end() || !image->second.second) fail("imageStore writes to the picture alone");
+  if (loops_ > 0) fail("imageStore is called in a loop: add up first, and store behind the loop");
+  const Value place = get(line.operands.at(1)), colour = get(line.operands.at(2));
+  const auto out = [&](const Scalar& pixel) {
+    put_word(word::kPixel, pixel);
+    for (int i = 0; i < 3; ++i) put_word(word::kColor + i, colour.at(static_cast<size_t>(i)));
+    k_.frame_out();
+  };
+  if (place.at(0).part == Scalar::Part::PixelX && place.at(1).part == Scalar::Part::PixelY) {
+    out(*pixel_);
+    return;
+  }
+  const Scalar inside = both(compare(Opcode::Ult, place[0], Scalar::constant(resources_.width)),
+                             compare(Opcode::Ult, place[1], Scalar::constant(resources_.height)));
+  under(inside, [&] { out(binary(Opcode::Or, place[0], immediate(Opcode::Shl, place[1], 16))); });
+}
+
+}  // namespace raypool::shader
