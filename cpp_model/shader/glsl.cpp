@@ -110,7 +110,7 @@ std::vector<uint32_t> spirv_of(const std::string& path) {
     words_of(text, path);
   }
   const std::string optimised = scratch.file("optimised.spv");
-  const Finished result = run({"spirv-opt", "--target-env=vulkan1.2", "-O", compiled, "-o", optimised});
+  const Finished result = run({"spirv-opt", "--target-env=vulkan1.2", "--scalar-block-layout", "-O", compiled, "-o", optimised});
   if (result.code != 0)
     throw InputError(fmt::format("{}: spirv-opt refuses it: {}", path, result.output.substr(0, result.output.find('\n'))));
   return words_of(read_file(optimised, "SPIR-V"), path);

@@ -4,6 +4,7 @@
 // recorded once, in order, and a lane that leaves it early is masked out until the place that it has gone to.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -64,8 +65,7 @@ class Lowering {
   Value incoming(const Line& phi, uint32_t from);
   void continue_at(uint32_t merge, uint32_t stop, bool masked);
   size_t predecessors(uint32_t label) const;
-  template <typename Body>
-  void under(const Scalar& condition, const Body& body);
+  void under(const Scalar& chosen, const std::function<void()>& body);
 
   // lowering_values.cpp: scalars
   Value get(uint32_t id);
@@ -111,7 +111,10 @@ class Lowering {
   std::optional<Value> glsl_of_floats(const Line& line, const std::vector<Value>& a);
   std::optional<Value> glsl_of_integers(const Line& line, const std::vector<Value>& a);
   std::optional<Value> glsl_of_vectors(const Line& line, const std::vector<Value>& a);
-  Value add(const Line& line, const Value& a, const Value& b);
+  Value with_second(const Line& line, Value first, const Value& second, bool by_pointer);
+  Scalar determinant(const Value& matrix);
+  static Value without(const Value& matrix, size_t size, size_t row, size_t column);
+  Value inverse_matrix(const Value& matrix);
   Scalar dot(const Value& a, const Value& b);
   Value dynamic_part(const Value& whole, uint32_t part_scalars, const Scalar& index);
   void product(const Line& line);

@@ -164,8 +164,7 @@ Lowering::Flow Lowering::flow(uint32_t label, uint32_t stop) {
   return all;
 }
 
-template <typename Body>
-void Lowering::under(const Scalar& chosen, const Body& body) {
+void Lowering::under(const Scalar& chosen, const std::function<void()>& body) {
   if (chosen.is_constant()) {
     if (chosen.bits != 0) body();
     return;

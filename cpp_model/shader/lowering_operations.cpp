@@ -170,21 +170,21 @@ bool Lowering::arithmetic(const Line& line) {
         if (b.is_constant() && b.bits != 0 && (b.bits & (b.bits - 1)) == 0)
           return immediate(Opcode::Shr, a, log2_of(b.bits));
         const RecordedInt first = as_int(a), second = as_int(b);
-        return of(math::udiv(k_, first, second));
+        return of(math::divide_unsigned(k_, first, second));
       });
     case spv::Op::OpUMod:
       return each([&](const Scalar& a, const Scalar& b) {
         if (b.is_constant() && b.bits != 0 && (b.bits & (b.bits - 1)) == 0)
           return immediate(Opcode::And, a, b.bits - 1);
         const RecordedInt first = as_int(a), second = as_int(b);
-        return of(math::umod(k_, first, second));
+        return of(math::remainder_unsigned(k_, first, second));
       });
     case spv::Op::OpSDiv:
-      return exact([&](const RecordedInt& a, const RecordedInt& b) { return math::sdiv(k_, a, b); });
+      return exact([&](const RecordedInt& a, const RecordedInt& b) { return math::divide_signed(k_, a, b); });
     case spv::Op::OpSRem:
-      return exact([&](const RecordedInt& a, const RecordedInt& b) { return math::srem(k_, a, b); });
+      return exact([&](const RecordedInt& a, const RecordedInt& b) { return math::remainder_signed(k_, a, b); });
     case spv::Op::OpSMod:
-      return exact([&](const RecordedInt& a, const RecordedInt& b) { return math::smod(k_, a, b); });
+      return exact([&](const RecordedInt& a, const RecordedInt& b) { return math::modulo_signed(k_, a, b); });
     case spv::Op::OpShiftLeftLogical:
       return plain(Opcode::Shl);
     case spv::Op::OpShiftRightLogical:
@@ -275,14 +275,14 @@ bool Lowering::conversion(const Line& line) {
     case spv::Op::OpConvertFToU:
       return each([&](const Scalar& a) {
         const RecordedFloat value = as_float(a);
-        return narrowed_result(line, of(math::to_unsigned(k_, value)));
+        return narrowed_result(line, of(math::float_to_unsigned(k_, value)));
       });
     case spv::Op::OpConvertUToF:
       return each([&](const Scalar& a) {
         if (a.is_constant()) return Scalar::constant(as_bits(static_cast<float>(a.bits)));
         if (a.part != Scalar::Part::None) return unary(Opcode::I2f, a);  // 16 bits
         const RecordedInt value = as_int(a);
-        return of(math::from_unsigned(k_, value));
+        return of(math::unsigned_to_float(k_, value));
       });
     case spv::Op::OpUConvert:
     case spv::Op::OpSConvert:
