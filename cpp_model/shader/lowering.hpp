@@ -122,6 +122,7 @@ class Lowering {
 
   // lowering_memory.cpp: pointers
   void begin_variables();
+  void keep(uint32_t id, uint32_t type, const Value& first);
   void access(const Line& line);
   void load(const Line& line);
   void store(const Line& line);
@@ -182,8 +183,15 @@ class Lowering {
   std::set<uint32_t> written_;                      // variables
   std::optional<Scalar> pixel_, flags_;             // words of the ray that has come
   bool tag_came_ = false;                           // with it
-  std::set<uint32_t> given_away_;  // payloads that a ray has taken with it
-  RayLimits cast_;                 // on the way here
+  /// What holds of the lanes of the mask at one place.
+  struct Way {
+    std::set<uint32_t> given_away;  // payloads that a ray has taken with it
+    RayLimits cast;
+    std::map<std::pair<uint32_t, size_t>, Scalar> known;  // what scalars of variables have been set to
+  };
+  /// That of lanes from both.
+  static Way joined(const std::optional<Way>& a, const Way& b);
+  Way way_;
 };
 
 }  // namespace raypool::shader

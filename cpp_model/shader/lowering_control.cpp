@@ -174,6 +174,20 @@ void Lowering::under(const Scalar& chosen, const std::function<void()>& body) {
   recorder_.end_if();
 }
 
+Lowering::Way Lowering::joined(const std::optional<Way>& a, const Way& b) {
+  if (!a) return b;
+  Way both = *a;
+  add(both.given_away, b.given_away);
+  both.cast.normal = std::max(both.cast.normal, b.cast.normal);
+  both.cast.shadow = std::max(both.cast.shadow, b.cast.shadow);
+  for (auto entry = both.known.begin(); entry != both.known.end();) {
+    const auto other = b.known.find(entry->first);
+    const bool same = other != b.known.end() && other->second == entry->second;
+    entry = same ? std::next(entry) : both.known.erase(entry);
+  }
+  return both;
+}
+
 void Lowering::lines(const Block& block) {
   current_ = block.label;
   for (const Line& line : block.lines) {
@@ -293,8 +307,7 @@ void Lowering::select_phis(const Block& merge, const Scalar& chosen, uint32_t fr
 void Lowering::selection(const Block& block, uint32_t stop) {
   const uint32_t merge = block.merge, yes = block.end.operands.at(1), no = block.end.operands.at(2);
   const Scalar chosen = get_scalar(block.end.operands.at(0));
-  const std::set<uint32_t> given_before = given_away_;
-  const RayLimits cast_before = cast_;
+  const Way before = way_;
   if (chosen.is_constant()) {
     const uint32_t taken = chosen.bits != 0 ? yes : no;
     // The merge has a value from this side alone.
@@ -320,12 +333,10 @@ void Lowering::selection(const Block& block, uint32_t stop) {
   if (masked) reach_[merge] = recorder_.declare_predicate();
   if (!by_selection && falls && merge_is_inner) declare_phis(merge);
 
-  std::set<uint32_t> given_after;
-  RayLimits cast_after;
+  std::optional<Way> after;
   uint32_t from_then = block.label, from_else = block.label;
   const auto arm = [&](uint32_t label, const Flow& its, uint32_t& from) {
-    given_away_ = given_before;
-    cast_ = cast_before;
+    way_ = before;
     if (by_selection) {
       if (label != merge) {
         region(label, merge);
@@ -334,18 +345,14 @@ void Lowering::selection(const Block& block, uint32_t stop) {
     } else {
       go(block.label, label, merge);
     }
-    if (!its.falls) return;
-    add(given_after, given_away_);
-    cast_after.normal = std::max(cast_after.normal, cast_.normal);
-    cast_after.shadow = std::max(cast_after.shadow, cast_.shadow);
+    if (its.falls) after = joined(after, way_);
   };
   // Nothing is to be done on a side that is the merge itself, unless masks or phis change there.
   const auto is_idle = [&](uint32_t label) {
     return label == merge && (by_selection || (!masked && reach_.count(merge) == 0 && !has_phis(merge)));
   };
   if (is_idle(yes) && is_idle(no)) {
-    given_after = given_before;
-    cast_after = cast_before;
+    after = before;
   } else if (is_idle(yes)) {
     under(inverse(chosen), [&] { arm(no, else_flow, from_else); });
     arm(yes, {{}, true}, from_then);
@@ -362,8 +369,7 @@ void Lowering::selection(const Block& block, uint32_t stop) {
     arm(no, else_flow, from_else);
     recorder_.end_if();
   }
-  given_away_ = given_after;
-  cast_ = cast_after;
+  way_ = after.value_or(before);
   if (!falls || !merge_is_inner) return;
   if (by_selection) select_phis(module_.block(merge), chosen, from_then, from_else);
   continue_at(merge, stop, masked);
@@ -372,26 +378,20 @@ void Lowering::selection(const Block& block, uint32_t stop) {
 void Lowering::unmerged_branch(const Block& block, uint32_t stop) {
   const uint32_t yes = block.end.operands.at(1), no = block.end.operands.at(2);
   const Scalar chosen = get_scalar(block.end.operands.at(0));
-  const std::set<uint32_t> given_before = given_away_;
-  const RayLimits cast_before = cast_;
-  std::set<uint32_t> given_after;
-  RayLimits cast_after;
+  const Way before = way_;
+  std::optional<Way> after;
   const auto side = [&](const Scalar& which, uint32_t label) {
     const bool idle = (label == stop || is_open(label)) && reach_.count(label) == 0 && !has_phis(label);
-    given_away_ = given_before;
-    cast_ = cast_before;
+    way_ = before;
     if (!idle) under(which, [&] { go(block.label, label, stop); });
-    add(given_after, given_away_);
-    cast_after.normal = std::max(cast_after.normal, cast_.normal);
-    cast_after.shadow = std::max(cast_after.shadow, cast_.shadow);
+    after = joined(after, way_);
   };
   // Lanes that leave go first: the others' values may replace what they take along.
   const bool no_first = no == stop || is_open(no);
   if (no_first) side(inverse(chosen), no);
   side(chosen, yes);
   if (!no_first) side(inverse(chosen), no);
-  given_away_ = given_after;
-  cast_ = cast_after;
+  way_ = *after;
 }
 
 void Lowering::loop(const Block& header, uint32_t stop) {
@@ -407,6 +407,7 @@ void Lowering::loop(const Block& header, uint32_t stop) {
   for (const Line& phi : header.phis)
     if (phis_.count(phi.id) == 0) fail("the SPIR-V enters a loop in a way that is not supported: make it again");
 
+  way_.known.clear();
   const int again = recorder_.emit_predicates(Opcode::Pand, 0, 0, where_);
   recorder_.begin_loop(again, where_);
   ++loops_;
@@ -435,6 +436,7 @@ void Lowering::loop(const Block& header, uint32_t stop) {
     open_.pop_back();
     const int lanes = reach_.at(header.continues);
     reach_.erase(header.continues);
+    way_.known.clear();
     under(Scalar::in_predicate(lanes), [&] { region(header.continues, header.label); });
   }
   open_.resize(opened);
@@ -442,6 +444,7 @@ void Lowering::loop(const Block& header, uint32_t stop) {
   if (saved) reach_[header.label] = *saved;
   --loops_;
   recorder_.end_loop(next, false);
+  way_.known.clear();
   if (!whole.falls) return;
   if (!merge_is_inner) return;
   continue_at(merge, stop, masked);
@@ -467,10 +470,8 @@ void Lowering::switch_over(const Block& header, uint32_t stop) {
       declare_phis(one.label);
     }
   }
-  const std::set<uint32_t> given_before = given_away_;
-  const RayLimits cast_before = cast_;
-  std::set<uint32_t> given_after = given_before;
-  RayLimits cast_after = cast_before;
+  const Way before = way_;
+  Way after = before;
   const auto matches = [&](const Case& one) {
     Scalar any = Scalar::constant(0);
     for (const uint32_t literal : one.literals)
@@ -489,27 +490,25 @@ void Lowering::switch_over(const Block& header, uint32_t stop) {
       if (reach_.count(merge) != 0 || has_phis(merge)) under(chosen, [&] { edge(header.label, merge); });
       continue;
     }
-    const auto reached = reach_.find(one.label);
     Scalar enters = chosen;
-    if (reached != reach_.end()) {
+    const bool shared = reach_.count(one.label) != 0;
+    if (shared) {
       under(chosen, [&] { edge(header.label, one.label); });
-      enters = Scalar::in_predicate(reached->second);
+      enters = Scalar::in_predicate(reach_.at(one.label));
       reach_.erase(one.label);
     } else {
       // It has but this predecessor, and its phis this value.
       for (const Line& phi : module_.block(one.label).phis) values_[phi.id] = incoming(phi, header.label);
     }
     open_.erase(std::find(open_.begin() + static_cast<std::ptrdiff_t>(opened), open_.end(), one.label));
-    given_away_ = given_before;
-    cast_ = cast_before;
+    way_ = shared ? after : before;  // lanes may come from the case before
+    way_.known.clear();
     under(enters, [&] { region(one.label, merge); });
-    add(given_after, given_away_);
-    cast_after.normal = std::max(cast_after.normal, cast_.normal);
-    cast_after.shadow = std::max(cast_after.shadow, cast_.shadow);
+    after = joined(after, way_);
   }
   open_.resize(opened);
-  given_away_ = given_after;
-  cast_ = cast_after;
+  way_ = after;
+  way_.known.clear();
   if (!whole.falls || !merge_is_inner) return;
   continue_at(merge, stop, masked);
 }

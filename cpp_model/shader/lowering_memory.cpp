@@ -32,16 +32,9 @@ void Lowering::begin_variables() {
     const uint32_t type = module_.type(pointer_type).element;
     Value& value = variables_[id];
     value.resize(module_.scalars(type));
-    if (written_.count(id) != 0)
+    if (written_.count(id) != 0 && initial == 0)
       for (uint32_t i = 0; i < value.size(); ++i) value[i] = declare(is_condition(type, i));
-    if (initial == 0) return;
-    const Value first = get(initial);
-    for (size_t i = 0; i < value.size(); ++i) {
-      if (written_.count(id) != 0)
-        assign(value[i], first[i]);
-      else
-        value[i] = first[i];
-    }
+    if (initial != 0) keep(id, type, get(initial));
   };
   for (const auto& [id, variable] : module_.variables()) {
     const Type& pointer = module_.type(variable.type);
@@ -70,6 +63,18 @@ void Lowering::begin_variables() {
   }
   for (const auto& [id, line] : module_.locals())
     declare_all(id, line.type, line.operands.size() > 1 ? line.operands[1] : 0);
+}
+
+/// A variable that begins with this value.
+void Lowering::keep(uint32_t id, uint32_t type, const Value& first) {
+  Value& value = variables_[id];
+  value = first;
+  if (written_.count(id) == 0) return;
+  for (uint32_t i = 0; i < value.size(); ++i) {
+    value[i] = declare(is_condition(type, i));
+    assign(value[i], first[i]);
+    way_.known[{id, i}] = first[i];
+  }
 }
 
 const Value& Lowering::variable(uint32_t id) {
@@ -327,8 +332,11 @@ Value Lowering::load_from(const Pointer& pointer) {
       const uint32_t size = module_.scalars(pointer.type);
       if (!pointer.dynamic.empty()) return chosen_part(whole, pointer, pointer.dynamic.size(), pointer.offset, size);
       Value value(whole.begin() + pointer.offset, whole.begin() + pointer.offset + size);
-      if (written_.count(pointer.variable) != 0)
-        for (Scalar& scalar : value) scalar = copy(scalar);
+      if (written_.count(pointer.variable) == 0) return value;
+      for (size_t i = 0; i < size; ++i) {
+        const auto known = way_.known.find({pointer.variable, pointer.offset + i});
+        value[i] = known != way_.known.end() ? known->second : copy(value[i]);
+      }
       return value;
     }
     default:
@@ -392,8 +400,13 @@ void Lowering::store_to(const Pointer& pointer, const Value& value) {
     }
     case Pointer::To::Variable: {
       variable(pointer.variable);  // there is one
-      given_away_.erase(pointer.variable);
+      way_.given_away.erase(pointer.variable);
       store_chosen(variables_.at(pointer.variable), pointer, pointer.dynamic.size(), pointer.offset, value);
+      if (pointer.dynamic.empty()) {
+        for (size_t i = 0; i < value.size(); ++i) way_.known[{pointer.variable, pointer.offset + i}] = value[i];
+      } else {
+        for (size_t i = 0; i < variable(pointer.variable).size(); ++i) way_.known.erase({pointer.variable, i});
+      }
       return;
     }
     case Pointer::To::Words:

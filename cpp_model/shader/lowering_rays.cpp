@@ -221,11 +221,11 @@ void Lowering::load_payload(uint32_t id, const Variable& variable) {
     value.push_back(immediate(Opcode::And, immediate(Opcode::Shr, *flags_, kTagShift), kTagMask));
     tag_came_ = true;
   }
-  variables_[id] = value;
+  keep(id, type, value);
 }
 
 void Lowering::check_not_given_away(uint32_t id) const {
-  if (given_away_.count(id) == 0) return;
+  if (way_.given_away.count(id) == 0) return;
   fail(fmt::format("payload '{}' is read after traceRayEXT, but a ray takes its payload along and the shader ends: add "
                    "to the picture in the shaders that the ray comes to",
                    module_.name_of(id)));
@@ -251,7 +251,7 @@ void Lowering::trace(const Line& line) {
     fail("gl_RayFlagsTerminateOnFirstHitEXT and gl_RayFlagsSkipClosestHitShaderEXT go together here: a ray looks for the "
          "closest hit, or asks whether it meets anything");
   }
-  int& count = shadow ? cast_.shadow : cast_.normal;
+  int& count = shadow ? way_.cast.shadow : way_.cast.normal;
   if (shadow && kernel_ == RayKernel::CastEye)
     fail("a ray generation shader traces a shadow ray: trace it in the closest-hit shader");
   if (++count > 1) {
@@ -277,14 +277,18 @@ void Lowering::trace(const Line& line) {
     put_payload(payload, shadow);
     k_.ray_out();
   }
-  given_away_.insert(payload);
+  way_.given_away.insert(payload);
 }
 
 void Lowering::put_payload(uint32_t id, bool shadow) {
   const auto known = module_.variables().find(id);
   if (known == module_.variables().end()) fail("the payload of a ray must be a variable of the shader");
   const uint32_t type = module_.type(known->second.type).element;
-  const Value& value = variable(id);
+  Value value = variable(id);
+  for (size_t i = 0; i < value.size(); ++i) {
+    const auto known = way_.known.find({id, i});
+    if (known != way_.known.end()) value[i] = known->second;
+  }
   const auto words = payload_words(type);
   Scalar tag = Scalar::constant(0);
   for (size_t i = 0; i < words.size(); ++i) {
