@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include "bits.hpp"
@@ -73,14 +74,15 @@ struct Placed {
 struct Assembly {
   Scene scene;  ///< without vertices
   FilePlaces places;
+  Surfaces surfaces;  ///< without positions; empty unless they are asked for
   std::vector<Placed> cameras, lights;
 };
 
 /// Nodes are where Assimp has them, in single precision; `exact`: where the file has them.
 class Assembler {
  public:
-  Assembler(const aiScene& source, const GltfDocument& document, bool exact, Assembly& result)
-      : source_(source), document_(document), exact_(exact), result_(result) {}
+  Assembler(const aiScene& source, const GltfDocument& document, bool surfaces, bool exact, Assembly& result)
+      : source_(source), document_(document), surfaces_(surfaces), exact_(exact), result_(result) {}
 
   void add(const aiNode& node, const Transform& above) {
     // The root above several nodes is Assimp's own, without a number.
@@ -109,6 +111,7 @@ class Assembler {
       const aiVector3D& v = mesh.mVertices[i];
       result_.places.add(here({v.x, v.y, v.z}));
     }
+    if (surfaces_) add_surfaces(mesh, here);
     // A mirrored mesh is wound the other way round.
     const bool mirrored = dot(cross(here.x, here.y), here.z) < 0;
     const uint32_t material = material_of(mesh);
@@ -117,6 +120,23 @@ class Assembler {
       scene.triangles.push_back(
           {first + corners[0], first + corners[mirrored ? 2 : 1], first + corners[mirrored ? 1 : 2]});
       scene.triangle_materials.push_back(material);
+    }
+  }
+
+  void add_surfaces(const aiMesh& mesh, const Transform& here) {
+    const Transform turn = here.of_normals();
+    const Surfaces& from = document_.surfaces;
+    if (mesh.mTextureCoords[0] == nullptr) throw InputError("a mesh has lost its vertices' numbers");
+    Surfaces& to = result_.surfaces;
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      // Assimp turns v round.
+      const aiVector3D& number = mesh.mTextureCoords[0][i];
+      const size_t vertex = static_cast<size_t>(number.x) | static_cast<size_t>(1 - number.y) << 16;
+      const Vec3d normal = turn(from.normals[vertex].as<double>());
+      const double size = length(normal);
+      to.normals.push_back(size > 0 ? (normal * (1 / size)).as<float>() : Vec3{});
+      to.texcoords.push_back(from.texcoords[vertex]);
+      to.colors.push_back(from.colors[vertex]);
     }
   }
 
@@ -131,15 +151,16 @@ class Assembler {
 
   const aiScene& source_;
   const GltfDocument& document_;
-  const bool exact_;
+  const bool surfaces_, exact_;
   Assembly& result_;
 };
 
-Assembly assemble(const aiScene& source, const std::string& path, const GltfDocument& document, bool exact) {
+Assembly assemble(const aiScene& source, const std::string& path, const GltfDocument& document, bool surfaces,
+                  bool exact) {
   Assembly result;
   result.scene.name = std::filesystem::path(path).stem().string();
   result.scene.materials = document.materials;
-  Assembler(source, document, exact, result).add(*source.mRootNode, {});
+  Assembler(source, document, surfaces, exact, result).add(*source.mRootNode, {});
   return result;
 }
 
@@ -149,7 +170,7 @@ std::vector<uint32_t> used_corners(const Scene& scene) {
   return corners;
 }
 
-Assembly assemble(const std::string& path, const GltfDocument& document) {
+Assembly assemble(const std::string& path, const GltfDocument& document, bool surfaces) {
   Assimp::Importer importer;
   importer.SetIOHandler(new GltfMemory(document));
   const aiScene* source = importer.ReadFile(kGeometryName, 0);
@@ -157,9 +178,9 @@ Assembly assemble(const std::string& path, const GltfDocument& document) {
     throw InputError(
         fmt::format("{}: not a readable glTF file ({}); export it again", path, importer.GetErrorString()));
   }
-  Assembly result = assemble(*source, path, document, false);
+  Assembly result = assemble(*source, path, document, surfaces, false);
   const Vec3d centre = result.places.centre(used_corners(result.scene));
-  if (!(centre == Vec3d{})) result = assemble(*source, path, document, true);
+  if (!(centre == Vec3d{})) result = assemble(*source, path, document, surfaces, true);
   result.places.put_into(result.scene, centre);
   return result;
 }
@@ -233,6 +254,7 @@ std::optional<PointLight> choose_light(const std::string& path, const GltfDocume
                normalized(backwards) * (kDistantLight * static_cast<double>(bounds.diagonal()));
     lost = fmt::format("intensity ({:g})", light.intensity);
   }
+  if (scene.surfaces) return PointLight{position.as<float>(), light.color};  // which have all of it
   scene.warnings.push_back(fmt::format("{}: the light is '{}' ({}), as a point with its colour: its {} {} not used",
                                        path, name_of(light.name, chosen->node, "light", chosen->index), light.type,
                                        lost, light.type == "directional" ? "is" : "are"));
@@ -245,17 +267,51 @@ std::optional<PointLight> choose_light(const std::string& path, const GltfDocume
   return PointLight{position.as<float>(), light.color};
 }
 
+void add_lights(const GltfDocument& document, const Assembly& assembly, const Vec3d& centre, Surfaces& surfaces) {
+  for (const Placed& placed : assembly.lights) {
+    const GltfLight& light = document.lights[placed.index];
+    SurfaceLight result;
+    result.kind = light.type == "point"  ? SurfaceLight::Kind::Point
+                  : light.type == "spot" ? SurfaceLight::Kind::Spot
+                                         : SurfaceLight::Kind::Directional;
+    result.position = from_file(centre, placed.transform.origin);
+    const Vec3d backwards = placed.transform.z;
+    if (length(backwards) > 0) result.direction = (normalized(backwards) * -1.0).as<float>();
+    result.color = light.color * static_cast<float>(light.intensity);
+    result.range = static_cast<float>(light.range);
+    result.inner_cone = static_cast<float>(light.inner_cone);
+    result.outer_cone = static_cast<float>(light.outer_cone);
+    surfaces.lights.push_back(result);
+  }
+}
+
+/// Of the scene before its vertices are welded.
+std::shared_ptr<const Surfaces> finished_surfaces(GltfDocument& document, Assembly& assembly, const Scene& scene) {
+  Surfaces& surfaces = assembly.surfaces;
+  surfaces.triangles = scene.triangles;
+  surfaces.positions = scene.vertices;
+  surfaces.materials = std::move(document.surfaces.materials);
+  surfaces.images = std::move(document.surfaces.images);
+  surfaces.textures = std::move(document.surfaces.textures);
+  if (surfaces.materials.size() < scene.materials.size())
+    surfaces.materials.push_back(surface_material(scene.materials.back().kd, {}));
+  add_lights(document, assembly, scene.centre, surfaces);
+  finish(surfaces);
+  return std::make_shared<const Surfaces>(std::move(surfaces));
+}
+
 }  // namespace
 
-SceneFile load_gltf(const std::string& path, const std::string& camera) {
-  const GltfDocument document = read_gltf_document(path);
-  Assembly assembly = assemble(path, document);
+SceneFile load_gltf(const std::string& path, const std::string& camera, bool surfaces) {
+  GltfDocument document = read_gltf_document(path, surfaces);
+  Assembly assembly = assemble(path, document, surfaces);
   SceneFile result;
   result.scene = std::move(assembly.scene);
   result.scene.warnings = document.warnings;
   result.up = Vec3{0, 1, 0};
   check_scene(result.scene, path);
   assembly.places.tell_lost_detail(result.scene, path);
+  if (surfaces) result.scene.surfaces = finished_surfaces(document, assembly, result.scene);
   weld_vertices(result.scene);
   result.camera = choose_camera(path, camera, document, assembly, result.scene);
   result.light = choose_light(path, document, assembly, result.scene);

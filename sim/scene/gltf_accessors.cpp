@@ -18,7 +18,11 @@ size_t component_bytes(int type) {
 }
 
 const char* type_of(size_t components) {
-  return components == 1 ? "SCALAR" : components == 3 ? "VEC3" : components == 4 ? "VEC4" : "MAT4";
+  return components == 1   ? "SCALAR"
+         : components == 2 ? "VEC2"
+         : components == 3 ? "VEC3"
+         : components == 4 ? "VEC4"
+                           : "MAT4";
 }
 
 template <typename Number>
@@ -53,6 +57,15 @@ const GltfForm kGltfPositions{
     3,
     {kFloat, kByte, kUnsignedByte, kShort, kUnsignedShort},
     "must be 5126, or 5120 to 5123 where it is quantised, and the type VEC3: it is three numbers; export it as such"};
+const GltfForm kGltfNormals{
+    3, {kFloat, kByte, kShort}, "must be 5126, or 5120 or 5122 where it is quantised, and the type VEC3: a direction"};
+const GltfForm kGltfTexcoords{2,
+                              {kFloat, kByte, kUnsignedByte, kShort, kUnsignedShort},
+                              "must be 5126, or 5120 to 5123 where it is quantised, and the type VEC2: two numbers"};
+const GltfForm kGltfColors{
+    4, {kFloat, kUnsignedByte, kUnsignedShort}, "must be 5126, 5121 or 5123 and the type VEC3 or VEC4: a colour"};
+const GltfForm kGltfOpaqueColors{
+    3, {kFloat, kUnsignedByte, kUnsignedShort}, "must be 5126, 5121 or 5123 and the type VEC3 or VEC4: a colour"};
 const GltfForm kGltfIndices{1,
                             {kUnsignedByte, kUnsignedShort, kUnsignedInt},
                             "must be 5121, 5123 or 5125 and the type SCALAR: indices are whole numbers"};

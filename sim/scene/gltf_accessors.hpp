@@ -23,7 +23,8 @@ struct GltfForm {
 };
 
 /// Quantised positions and joints' weights are allowed whether or not the file names KHR_mesh_quantization.
-extern const GltfForm kGltfPositions, kGltfIndices, kGltfJoints, kGltfWeights, kGltfMatrices, kGltfRotations;
+extern const GltfForm kGltfPositions, kGltfIndices, kGltfJoints, kGltfWeights, kGltfMatrices, kGltfRotations,
+    kGltfNormals, kGltfTexcoords, kGltfColors, kGltfOpaqueColors;
 
 class GltfAccessors {
  public:

@@ -9,6 +9,7 @@
 
 #include "files/json_text.hpp"
 #include "scene/gltf_geometry.hpp"
+#include "scene/gltf_surface.hpp"
 #include "scene/losses.hpp"
 
 namespace raypool {
@@ -48,13 +49,27 @@ void read_cameras(const JsonPlace& root, std::vector<GltfCamera>& cameras) {
   }
 }
 
-void read_lights(const JsonPlace& root, std::vector<GltfLight>& lights) {
+/// Where it shines.
+void read_reach(const JsonPlace& place, GltfLight& light) {
+  if (const std::optional<JsonPlace> range = place.find("range")) light.range = range->number(0, 1e30);
+  constexpr double kRight = 1.57079632679489662;
+  const std::optional<JsonPlace> spot = place.find("spot");
+  if (light.type != "spot" || !spot) return;
+  const auto read = [&](const char* key, double& angle) {
+    if (const std::optional<JsonPlace> given = spot->find(key)) angle = given->number(0, kRight + 1e-6);
+  };
+  read("innerConeAngle", light.inner_cone);
+  read("outerConeAngle", light.outer_cone);
+  light.inner_cone = std::min(light.inner_cone, light.outer_cone);
+}
+
+void read_lights(const JsonPlace& root, std::vector<GltfLight>& lights, bool surfaces) {
   const std::optional<JsonPlace> extensions = root.find("extensions");
   const std::optional<JsonPlace> punctual = extensions ? extensions->find("KHR_lights_punctual") : std::nullopt;
   const std::optional<JsonPlace> list = punctual ? punctual->find("lights") : std::nullopt;
   for (size_t i = 0; list && i < list->size(); ++i) {
     const JsonPlace place = list->at(i), type = place.at("type");
-    GltfLight light{"", type.text(), {1, 1, 1}, 1};
+    GltfLight light{"", type.text(), {1, 1, 1}};
     if (light.type != "point" && light.type != "spot" && light.type != "directional")
       type.fail(fmt::format("is '{}'; it must be point, spot or directional", light.type));
     if (const std::optional<JsonPlace> name = place.find("name")) light.name = name->text();
@@ -65,16 +80,23 @@ void read_lights(const JsonPlace& root, std::vector<GltfLight>& lights) {
     }
     if (const std::optional<JsonPlace> intensity = place.find("intensity"))
       light.intensity = intensity->number(0, 1e30);
+    if (surfaces) read_reach(place, light);
     lights.push_back(light);
   }
 }
 
-void read_materials(const JsonPlace& root, const std::vector<bool>& used, GltfDocument& document,
-                    const GltfFile& file) {
+void read_materials(const JsonPlace& root, const std::vector<bool>& used, GltfDocument& document, GltfFile& file,
+                    bool surfaces) {
   const std::optional<JsonPlace> list = root.find("materials");
   MaterialLosses losses, unused;
   for (size_t i = 0; list && i < list->size(); ++i) {
     document.materials.push_back(read_gltf_material(list->at(i), i, i < used.size() && used[i] ? losses : unused));
+  }
+  if (surfaces) {
+    const size_t beyond = losses.beyond;
+    losses = {};
+    losses.beyond = beyond;
+    read_gltf_surfaces(file, used, document.surfaces, losses, document.warnings);
   }
   tell_losses(document.warnings, file.path(), losses);
 }
@@ -92,7 +114,7 @@ void warn_of_geometry(GltfDocument& document, const GltfFile& file, const GltfGe
 
 }  // namespace
 
-GltfDocument read_gltf_document(const std::string& path) {
+GltfDocument read_gltf_document(const std::string& path, bool surfaces) {
   GltfFile file(path);
   const JsonPlace root = file.root(), version = root.at("asset").at("version");
   if (version.text().rfind("2.", 0) != 0)
@@ -100,10 +122,10 @@ GltfDocument read_gltf_document(const std::string& path) {
   check_extensions(root);
   GltfDocument document;
   read_cameras(root, document.cameras);
-  read_lights(root, document.lights);
-  GltfGeometry geometry(file, document);
+  read_lights(root, document.lights, surfaces);
+  GltfGeometry geometry(file, document, surfaces);
   geometry.add_scene();
-  read_materials(root, geometry.used(), document, file);
+  read_materials(root, geometry.used(), document, file, surfaces);
   document.geometry = to_text(geometry.json(), -1);
   warn_of_geometry(document, file, geometry.losses());
   return document;

@@ -22,6 +22,8 @@ struct GltfLight {
   std::string name, type;  ///< point, spot or directional
   Vec3 color;
   double intensity = 1;
+  double range = 0;                                    ///< 0: without end
+  double inner_cone = 0, outer_cone = 0.785398163397;  ///< of a spot: angles, radians
 };
 
 /// Indices into the document's lists.
@@ -44,10 +46,14 @@ struct GltfDocument {
   std::vector<GltfCamera> cameras;
   std::vector<GltfLight> lights;
   std::vector<std::string> warnings;
+
+  /// What only surfaces have; empty unless they are asked for. Materials, textures and images are whole, and vertices
+  /// are those of the geometry: each has the number of its own as TEXCOORD_0, bits 15:0 and 31:16.
+  Surfaces surfaces;
 };
 
 /// Throws InputError naming file, place and what to do.
-GltfDocument read_gltf_document(const std::string& path);
+GltfDocument read_gltf_document(const std::string& path, bool surfaces = false);
 
 /// The rule of docs/use/scenes.md, "glTF files".
 Material read_gltf_material(const JsonPlace& place, size_t index, MaterialLosses& losses);

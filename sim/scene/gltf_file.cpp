@@ -121,14 +121,30 @@ std::string GltfFile::read_binary(const std::string& bytes) {
   return text;
 }
 
-std::string GltfFile::read_external(const std::string& uri, const JsonPlace& place) const {
+std::string GltfFile::read_external(const std::string& uri, const JsonPlace& place, const std::string& what) const {
   const fs::path name = percent_decoded(uri);
   bool outside = name.empty() || name.is_absolute() || uri.find("://") != std::string::npos;
   for (const fs::path& part : name) outside = outside || part == "..";
   if (outside || name.native().find('\0') != std::string::npos) {
     place.fail(fmt::format("is '{}'; it must be a file in the folder of this one, or below it", uri));
   }
-  return read_file((fs::path(path_).parent_path() / name).string(), "buffer of " + path_);
+  return read_file((fs::path(path_).parent_path() / name).string(), what + " of " + path_);
+}
+
+std::string GltfFile::image(const JsonPlace& place) {
+  if (const std::optional<JsonPlace> uri = place.find("uri")) {
+    const std::string text = uri->text();
+    return text.compare(0, 5, "data:") == 0 ? decode_data_uri(text, *uri) : read_external(text, *uri, "image");
+  }
+  const JsonPlace view = place.at("bufferView").in(root(), "bufferViews"), number = view.at("buffer");
+  const JsonPlace source = number.in(root(), "buffers");
+  const std::string& bytes = buffer(source, number.whole(0, kLargestBuffer));
+  const std::optional<JsonPlace> begin = view.find("byteOffset");
+  const uint64_t offset = begin ? begin->whole(0, kLargestBuffer) : 0;
+  const uint64_t length = view.at("byteLength").whole(1, kLargestBuffer);
+  if (offset + length > bytes.size())
+    view.fail(fmt::format("goes to byte {} of a buffer of {}; export the file again", offset + length, bytes.size()));
+  return bytes.substr(offset, length);
 }
 
 const std::string& GltfFile::buffer(const JsonPlace& place, size_t index) {
@@ -139,7 +155,7 @@ const std::string& GltfFile::buffer(const JsonPlace& place, size_t index) {
   std::string bytes;
   if (uri) {
     const std::string text = uri->text();
-    bytes = text.compare(0, 5, "data:") == 0 ? decode_data_uri(text, *uri) : read_external(text, *uri);
+    bytes = text.compare(0, 5, "data:") == 0 ? decode_data_uri(text, *uri) : read_external(text, *uri, "buffer");
   } else if (index == 0 && has_chunk_) {
     bytes.swap(chunk_);
   } else {

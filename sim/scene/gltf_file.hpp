@@ -22,10 +22,12 @@ class GltfFile {
   /// The bytes of a buffer at this place of the document: from a file beside this one, a data URI or the binary chunk.
   /// As many as its byteLength.
   const std::string& buffer(const JsonPlace& place, size_t index);
+  /// The bytes of an image at this place: from a buffer view, a file beside this one or a data URI.
+  std::string image(const JsonPlace& place);
 
  private:
   std::string read_binary(const std::string& bytes);
-  std::string read_external(const std::string& uri, const JsonPlace& place) const;
+  std::string read_external(const std::string& uri, const JsonPlace& place, const std::string& what) const;
 
   std::string path_;
   JsonPlace::Json json_;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "scene/gltf_surface.hpp"
+
 namespace raypool {
 namespace {
 
@@ -98,12 +100,13 @@ GltfGeometry::Written GltfGeometry::write(const void* elements, size_t count, co
 }
 
 /// Adds the targets, each by its weight.
-void GltfGeometry::morph(const JsonPlace& place, const Pose& pose, std::vector<float>& positions) {
+void GltfGeometry::morph(const JsonPlace& place, const Pose& pose, const char* attribute,
+                         std::vector<float>& positions) {
   const std::optional<JsonPlace> targets = place.find("targets");
   if (!targets || pose.weights.empty()) return;
   std::vector<double> sum(positions.begin(), positions.end());
   for (size_t i = 0; i < std::min(targets->size(), pose.weights.size()); ++i) {
-    const std::optional<JsonPlace> target = targets->at(i).find("POSITION");
+    const std::optional<JsonPlace> target = targets->at(i).find(attribute);
     if (!target || pose.weights[i] == 0) continue;
     const std::vector<float> moves = accessors_.floats(target->in(root_, "accessors"), kGltfPositions);
     if (moves.size() != positions.size()) {
@@ -149,6 +152,72 @@ void GltfGeometry::bend(const JsonPlace& place, const std::vector<Transform>& jo
   }
 }
 
+std::vector<float> GltfGeometry::surface_values(const JsonPlace& attribute, const GltfForm& form, size_t count) {
+  std::vector<float> values = accessors_.floats(attribute.in(root_, "accessors"), form);
+  if (values.size() != form.components * count) {
+    attribute.fail(
+        fmt::format("has {} elements for {} vertices; export the file again", values.size() / form.components, count));
+  }
+  return values;
+}
+
+GltfGeometry::Written GltfGeometry::surface_vertices(const JsonPlace& place, const Pose& pose, size_t count) {
+  const JsonPlace attributes = place.at("attributes");
+  const std::optional<JsonPlace> number = place.find("material");
+  const GltfTexcoords texcoords = number ? gltf_texcoords(number->in(root_, "materials")) : GltfTexcoords();
+  const std::string set = fmt::format("TEXCOORD_{}", texcoords.set);
+  const std::optional<JsonPlace> normal = attributes.find("NORMAL"), texcoord = attributes.find(set.c_str()),
+                                 color = attributes.find("COLOR_0");
+  // Targets and joints are of the primitive.
+  std::string key = pose.weights.empty() && pose.joints == nullptr ? "" : place.where() + pose.name;
+  for (const std::optional<JsonPlace>& attribute : {attributes.find("POSITION"), normal, texcoord, color})
+    key += attribute ? " " + attribute->in(root_, "accessors").where() : " -";
+  key += fmt::format(" {} {} {} {} {}", texcoords.offset[0], texcoords.offset[1], texcoords.scale[0],
+                     texcoords.scale[1], texcoords.rotation);
+  const auto known = vertices_.find(key);
+  if (known != vertices_.end()) return known->second;
+
+  Surfaces& all = document_.surfaces;
+  const size_t first = all.normals.size();
+  if (first + count > kLargestCount)
+    place.fail(fmt::format("brings the scene to more than {} vertices", kLargestCount));
+  std::vector<float> normals(3 * count), uv(2 * count), rgba(4 * count, 1);
+  if (normal) {
+    normals = surface_values(*normal, kGltfNormals, count);
+    morph(place, pose, "NORMAL", normals);
+    if (pose.joints != nullptr) {
+      std::vector<Transform> joints;
+      for (const Transform& joint : *pose.joints) joints.push_back(joint.of_normals());
+      bend(place, joints, normals);
+    }
+  }
+  if (texcoord) uv = surface_values(*texcoord, kGltfTexcoords, count);
+  if (color) {
+    const bool opaque = color->in(root_, "accessors").at("type").text() == "VEC3";
+    const std::vector<float> values = surface_values(*color, opaque ? kGltfOpaqueColors : kGltfColors, count);
+    const size_t channels = opaque ? 3 : 4;
+    for (size_t i = 0; i < values.size(); ++i) rgba[i / channels * 4 + i % channels] = values[i];
+  }
+  const auto check = [](const std::optional<JsonPlace>& attribute, const std::vector<float>& values, const char* what) {
+    if (!std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }))
+      attribute->fail(fmt::format("has a {} that is infinite or no number; correct the mesh", what));
+  };
+  check(texcoord, uv, "texture coordinate");
+  check(color, rgba, "colour");
+  std::vector<float> numbers;
+  for (size_t i = 0; i < count; ++i) {
+    all.normals.push_back({normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]});
+    all.texcoords.push_back(texcoords({uv[2 * i], uv[2 * i + 1]}));
+    Rgba mixed{};
+    for (size_t k = 0; k < 4; ++k) mixed[k] = std::max(rgba[4 * i + k], 0.0f);
+    all.colors.push_back(mixed);
+    numbers.push_back(static_cast<float>((first + i) & 0xffff));
+    numbers.push_back(static_cast<float>((first + i) >> 16));
+  }
+  const Written result = write(numbers.data(), count, "VEC2", kFloat, numbers.size() * sizeof(float));
+  return vertices_.emplace(key, result).first->second;
+}
+
 GltfGeometry::Written GltfGeometry::positions(const JsonPlace& place, const Pose& pose) {
   const JsonPlace attributes = place.at("attributes"), position = attributes.at("POSITION");
   const JsonPlace accessor = position.in(root_, "accessors");
@@ -156,7 +225,7 @@ GltfGeometry::Written GltfGeometry::positions(const JsonPlace& place, const Pose
   const auto known = written_.find(accessor.where());
   if (as_they_are && known != written_.end()) return known->second;
   std::vector<float> values = accessors_.floats(accessor, kGltfPositions);
-  morph(place, pose, values);
+  morph(place, pose, "POSITION", values);
   if (pose.joints != nullptr) bend(place, *pose.joints, values);
   const auto far = std::find_if(values.begin(), values.end(), [](float value) { return !std::isfinite(value); });
   if (far != values.end()) {
@@ -183,6 +252,7 @@ Json GltfGeometry::primitive(const JsonPlace& place, const Pose& pose, uint64_t&
   }
   const Written vertices = positions(place, pose);
   Json json = {{"attributes", {{"POSITION", vertices.accessor}}}, {"mode", mode}};
+  if (surfaces_) json["attributes"]["TEXCOORD_0"] = surface_vertices(place, pose, vertices.count).accessor;
   size_t corners = vertices.count;
   if (given_indices) {
     const auto [list, largest] = indices(given_indices->in(root_, "accessors"));
@@ -205,6 +275,7 @@ Json GltfGeometry::primitive(const JsonPlace& place, const Pose& pose, uint64_t&
     used_.resize(std::max(used_.size(), index + 1));
     used_[index] = true;
   }
+  if (surfaces_) return json;
   losses_.vertex_colours += first_time && attributes.find("COLOR_0");
   losses_.vertex_normals += first_time && attributes.find("NORMAL");
   return json;

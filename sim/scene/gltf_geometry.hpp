@@ -22,8 +22,9 @@ class GltfGeometry {
     size_t lines = 0, vertex_colours = 0, vertex_normals = 0, hidden = 0;
   };
 
-  GltfGeometry(GltfFile& file, GltfDocument& document)
-      : file_(file), root_(file.root()), document_(document), accessors_(file) {}
+  /// `surfaces`: vertices get their numbers, and the document what they have of normals, texture coordinates, colours.
+  GltfGeometry(GltfFile& file, GltfDocument& document, bool surfaces)
+      : file_(file), root_(file.root()), document_(document), accessors_(file), surfaces_(surfaces) {}
 
   /// Adds the nodes of the scene to the document. Throws InputError naming the place of what cannot be drawn.
   void add_scene();
@@ -52,8 +53,11 @@ class GltfGeometry {
 
   Written write(const void* elements, size_t count, const char* type, int component, size_t bytes);
   Written positions(const JsonPlace& place, const Pose& pose);
-  void morph(const JsonPlace& place, const Pose& pose, std::vector<float>& positions);
+  void morph(const JsonPlace& place, const Pose& pose, const char* attribute, std::vector<float>& values);
   void bend(const JsonPlace& place, const std::vector<Transform>& joints, std::vector<float>& positions);
+  /// The numbers of a primitive's vertices, as an accessor; their surfaces' data are added to the document.
+  Written surface_vertices(const JsonPlace& place, const Pose& pose, size_t count);
+  std::vector<float> surface_values(const JsonPlace& attribute, const GltfForm& form, size_t count);
   /// And the largest of them.
   std::pair<Written, uint32_t> indices(const JsonPlace& accessor);
   /// Null for points and lines.
@@ -72,11 +76,13 @@ class GltfGeometry {
   const JsonPlace root_;
   GltfDocument& document_;
   GltfAccessors accessors_;
+  const bool surfaces_;
   Losses losses_;
   std::vector<bool> used_;
   uint64_t triangles_ = 0;
   std::map<std::string, TriangleMesh> meshes_;                   // by place and pose
   std::map<std::string, Written> written_;                       // accessors without a pose, by place
+  std::map<std::string, Written> vertices_;                      // numbers of vertices, by all that they are made of
   std::map<std::string, std::pair<Written, uint32_t>> indices_;  // and the largest of them
   std::map<std::string, std::vector<Transform>> skins_;          // by place
   std::set<std::string> counted_;                                // primitives: their losses have been

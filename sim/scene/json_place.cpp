@@ -1,10 +1,13 @@
 #include "scene/json_place.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "files/json_text.hpp"
+#include "isa/did_you_mean.hpp"
 #include "isa/input_error.hpp"
 
 namespace raypool {
@@ -34,6 +37,15 @@ JsonPlace JsonPlace::at(const char* key) const {
 size_t JsonPlace::members() const {
   if (!json_->is_object()) refuse("an object, {...}");
   return json_->size();
+}
+
+void JsonPlace::refuse_unknown(const std::vector<std::string>& known) const {
+  if (!json_->is_object()) refuse("an object, {...}");
+  for (const auto& item : json_->items()) {
+    if (std::find(known.begin(), known.end(), item.key()) != known.end()) continue;
+    const std::string advice = fmt::format("known are {}", fmt::join(known, ", "));
+    fail(fmt::format("has the unknown key '{}'{}", item.key(), did_you_mean(item.key(), known, advice)));
+  }
 }
 
 size_t JsonPlace::size() const {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace raypool {
 
@@ -19,6 +20,8 @@ class JsonPlace {
   std::optional<JsonPlace> find(const char* key) const;
   JsonPlace at(const char* key) const;
   size_t members() const;
+  /// Refuses members other than these.
+  void refuse_unknown(const std::vector<std::string>& known) const;
   /// Of an array.
   size_t size() const;
   JsonPlace at(size_t index) const;
@@ -32,6 +35,7 @@ class JsonPlace {
   std::string text() const;
 
   const std::string& where() const { return where_; }
+  const Json& json() const { return *json_; }
   [[noreturn]] void fail(const std::string& message) const;
 
  private:

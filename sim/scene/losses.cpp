@@ -7,7 +7,7 @@
 namespace raypool {
 namespace {
 
-constexpr EnumArray<Loss, const char*, 8> kWords = {
+constexpr EnumArray<Loss, const char*, 9> kWords = {
     "with textures: the colours beside them are used alone",
     "with emission, which is not used: the one light is a point",
     "with transparency, drawn opaque",
@@ -15,7 +15,8 @@ constexpr EnumArray<Loss, const char*, 8> kWords = {
     "of points or lines, not drawn",
     "with vertex colours, which are not used",
     "with vertex normals, which are not used: shading is flat",
-    "not played: all is where the nodes are"};
+    "not played: all is where the nodes are",
+    "with textures of normals, occlusion or other things, which are not used"};
 
 }  // namespace
 
@@ -33,6 +34,7 @@ void tell_loss(std::vector<std::string>& warnings, const std::string& path, size
 
 void tell_losses(std::vector<std::string>& warnings, const std::string& path, const MaterialLosses& losses) {
   tell_loss(warnings, path, losses.textures, "material", Loss::Textures);
+  tell_loss(warnings, path, losses.other_textures, "material", Loss::OtherTextures);
   tell_loss(warnings, path, losses.emissive, "material", Loss::Emission);
   tell_loss(warnings, path, losses.transparent, "material", Loss::Transparency);
   tell_loss(warnings, path, losses.extensions, "material", Loss::MaterialExtensions);

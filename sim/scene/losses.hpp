@@ -16,7 +16,8 @@ enum class Loss : uint8_t {
   PointsOrLines,
   VertexColours,
   VertexNormals,
-  Animations
+  Animations,
+  OtherTextures,
 };
 
 /// Adds "a.gltf: 3 materials with emission, which is not used" to `warnings`; nothing of a `count` of 0. `thing` is
@@ -30,6 +31,7 @@ void tell_count(std::vector<std::string>& warnings, const std::string& path, siz
 
 /// What of materials has no counterpart here: in how many of those that are drawn.
 struct MaterialLosses {
+  size_t other_textures = 0;  ///< which surfaces have not either
   size_t textures = 0, emissive = 0, transparent = 0, extensions = 0;
   size_t beyond = 0;  ///< 0 .. 1, where a number must lie within
 };

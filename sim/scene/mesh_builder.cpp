@@ -40,6 +40,11 @@ Transform Transform::operator*(const Transform& inner) const {
   return {turn(inner.x), turn(inner.y), turn(inner.z), (*this)(inner.origin)};
 }
 
+Transform Transform::of_normals() const {
+  const double sign = dot(cross(x, y), z) < 0 ? -1 : 1;
+  return {cross(y, z) * sign, cross(z, x) * sign, cross(x, y) * sign, {}};
+}
+
 Transform Transform::move(const Vec3d& by) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, by}; }
 Transform Transform::scale(double by) { return {{by, 0, 0}, {0, by, 0}, {0, 0, by}, {}}; }
 Transform Transform::turn_x(double degrees) {

@@ -22,6 +22,9 @@ struct Transform {
   /// This after `inner`.
   Transform operator*(const Transform& inner) const;
 
+  /// For normals of what this transforms: their direction counts, whatever their length becomes.
+  Transform of_normals() const;
+
   static Transform move(const Vec3d& by);
   static Transform scale(double by);
   static Transform turn_x(double degrees);

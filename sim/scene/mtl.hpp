@@ -17,6 +17,18 @@ struct MtlMaterial {
   bool texture = false, emission = false, transparent = false, extension = false;
   bool spectral = false, xyz = false;  ///< Kd or Ks are given so
 
+  /// What only surfaces have; of numbers that are none nothing.
+  struct Map {
+    std::string file;  ///< empty: none
+    bool clamp = false;
+  };
+  std::string path;  ///< of the file
+  Map map_kd, map_ke, map_d, map_pr, map_pm;
+  std::optional<float> pm, pr, ns, ni, opacity;
+  Vec3 ke{};
+  bool kd_given = false, ke_given = false;
+  bool other_texture = false, map_options = false, other_extension = false;  ///< which surfaces have not either
+
   /// illum 0, 1 and 2 are models of light without reflection: their Ks is a highlight, which is not drawn.
   bool reflects() const { return !illum || *illum >= 3; }
   Material material() const { return {name, kd, reflects() ? ks : Vec3{}}; }
@@ -26,8 +38,8 @@ struct MtlMaterial {
 void read_mtl(const std::string& path, std::vector<MtlMaterial>& materials);
 
 /// A sentence for each kind of thing about the materials that are drawn as something else: used[i]: a triangle has
-/// materials[i].
+/// materials[i]; `surfaces`: of what not even surfaces have.
 void tell_of_materials(std::vector<std::string>& warnings, const std::string& path,
-                       const std::vector<MtlMaterial>& materials, const std::vector<bool>& used);
+                       const std::vector<MtlMaterial>& materials, const std::vector<bool>& used, bool surfaces);
 
 }  // namespace raypool

@@ -5,14 +5,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string_view>
+#include <unordered_map>
+#include <utility>
 
 #include "bits.hpp"
 #include "files/input_file.hpp"
@@ -20,6 +22,7 @@
 #include "scene/far_places.hpp"
 #include "scene/losses.hpp"
 #include "scene/mtl.hpp"
+#include "scene/mtl_surfaces.hpp"
 #include "scene/obj_text.hpp"
 #include "scene/polygon.hpp"
 #include "scene/scene.hpp"
@@ -36,7 +39,9 @@ struct ObjLosses {
 
 class ObjReader {
  public:
-  explicit ObjReader(const std::string& path) : path_(path), text_(path, "OBJ file") {}
+  ObjReader(const std::string& path, bool surfaces) : path_(path), text_(path, "OBJ file") {
+    if (surfaces) surfaces_.emplace();
+  }
 
   Scene read() {
     for (ObjLine line; text_.next(line);) {
@@ -44,6 +49,10 @@ class ObjReader {
         add_vertex(line);
       } else if (line.key == "f") {
         add_face(line);
+      } else if (surfaces_ && line.key == "vt") {
+        add_texcoord(line);
+      } else if (surfaces_ && line.key == "vn") {
+        add_normal(line);
       } else if (line.key == "usemtl") {
         material_ = names_.emplace(line.rest, size32(names_)).first->second;
       } else if (line.key == "mtllib") {
@@ -59,6 +68,7 @@ class ObjReader {
     scene_.name = fs::path(path_).stem().string();
     add_triangles();
     add_warnings();
+    if (surfaces_) add_surfaces();
     return std::move(scene_);
   }
 
@@ -83,6 +93,32 @@ class ObjReader {
     places_.add(p);
     // A colour stands behind the place, or behind its weight.
     coloured_.push_back(words.size() >= 6);
+    if (!surfaces_ || words.size() < 6) return;
+    colours_.resize(places_.size() - 1, {1, 1, 1, 1});
+    Rgba colour{0, 0, 0, 1};
+    for (size_t i = 0; i < 3; ++i) {
+      const size_t word = (words.size() == 6 ? 3 : 4) + i;
+      colour[i] = static_cast<float>(srgb_to_linear(double_of(text_, line, words[word], "colour of a vertex", 0, 1)));
+    }
+    colours_.push_back(colour);
+  }
+
+  std::vector<float> floats_of(const ObjLine& line, const char* what, size_t least, size_t most) const {
+    const std::vector<std::string_view> words = words_of(line.rest);
+    if (words.size() < least) text_.fail(line, fmt::format("{} has {} numbers; give {}", what, words.size(), most));
+    std::vector<float> numbers(most);
+    for (size_t i = 0; i < std::min(most, words.size()); ++i)
+      numbers[i] = number_of(text_, line, words[i], what, -kLargestCoordinate, kLargestCoordinate);
+    return numbers;
+  }
+  /// v points upwards in the file, and may be left out.
+  void add_texcoord(const ObjLine& line) {
+    const std::vector<float> uv = floats_of(line, "texture coordinate", 1, 2);
+    texcoords_.push_back({uv[0], 1 - uv[1]});
+  }
+  void add_normal(const ObjLine& line) {
+    const std::vector<float> normal = floats_of(line, "normal", 3, 3);
+    normals_.push_back({normal[0], normal[1], normal[2]});
   }
 
   /// v, v/t, v//n or v/t/n; the numbers behind the first may be left out.
@@ -112,7 +148,30 @@ class ObjReader {
     }
     if (index > largest_) largest_ = index, largest_line_ = line.number;
     corners_.push_back(static_cast<uint32_t>(index > 0 ? index - 1 : vertices + index));
+    if (surfaces_) {
+      corner_texcoords_.push_back(
+          attribute(line, indices[1], texcoords_.size(), texcoord_range_, "texture coordinate"));
+      corner_normals_.push_back(attribute(line, indices[2], normals_.size(), normal_range_, "normal"));
+    }
     return indices[2] != 0;
+  }
+  /// The largest index of a kind, and the line that has it.
+  struct IndexRange {
+    long largest = 0;
+    size_t line = 0;
+  };
+  /// What an index of a corner names, of `count` that stand above it; kNone: it has none.
+  uint32_t attribute(const ObjLine& line, long index, size_t count, IndexRange& range, const char* what) const {
+    if (index == 0) return kNone;
+    if (const auto above = static_cast<long>(count); index < 0) {
+      if (-index > above) {
+        text_.fail(line, fmt::format("{} index {} is out of range; {} of them stand above this line, numbered from 1",
+                                     what, index, count));
+      }
+      index += above + 1;
+    }
+    if (index > range.largest) range = {index, line.number};
+    return static_cast<uint32_t>(std::min<long>(index - 1, kNone));
   }
   [[noreturn]] void refuse_corner(const ObjLine& line, std::string_view word) const {
     text_.fail(line,
@@ -132,36 +191,9 @@ class ObjReader {
     losses_.faces_with_normals += normals;
   }
 
-  /// The path of a library as the file names it; empty: it is nowhere. Exporters of Windows write "\" between folders,
-  /// whole paths of the machine that they ran on, and do not mind upper and lower case.
-  std::string find_library(std::string name) const {
-    const fs::path folder = fs::path(path_).parent_path();
-    const auto is_file = [](const fs::path& path) {
-      std::error_code none;
-      return fs::is_regular_file(path, none);
-    };
-    if (is_file(folder / name)) return (folder / name).string();
-    tell_missing((folder / name).string());
-    std::replace(name.begin(), name.end(), '\\', '/');
-    const fs::path own = folder / name, beside = folder / fs::path(name).filename();
-    for (const fs::path& path : {own, beside}) {
-      if (is_file(path)) return path.string();
-      std::error_code none;
-      for (fs::directory_iterator entry(path.parent_path().empty() ? "." : path.parent_path(), none), end;
-           !none && entry != end; entry.increment(none)) {
-        if (lower(entry->path().filename().string()) == lower(path.filename().string()) && is_file(entry->path()))
-          return (path.parent_path() / entry->path().filename()).string();
-      }
-    }
-    return "";
-  }
-  static std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
-  }
   bool read_library(std::string name) {
     if (name.size() > 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
-    const std::string path = name.empty() ? "" : find_library(name);
+    const std::string path = name.empty() ? "" : find_named_file(fs::path(path_).parent_path().string(), name);
     if (path.empty()) return false;
     if (libraries_.insert(path).second) read_mtl(path, materials_);
     return true;
@@ -189,11 +221,17 @@ class ObjReader {
       }
       if (words[i].front() == '#') break;
       missing += (missing.empty() ? "" : " ") + std::string(words[i++]);
-      if (lower(fs::path(missing).extension().string()) == ".mtl") miss();
+      if (lower_case(fs::path(missing).extension().string()) == ".mtl") miss();
     }
     miss();
   }
 
+  void check_range(const IndexRange& range, size_t count, const char* what) const {
+    if (range.largest <= static_cast<long>(count)) return;
+    ObjLine line;
+    line.number = range.line;
+    text_.fail(line, fmt::format("{} index {} is out of range; the file has {} of them", what, range.largest, count));
+  }
   void check_faces() const {
     const auto vertices = static_cast<long>(places_.size());
     if (largest_ > vertices) {
@@ -201,6 +239,8 @@ class ObjReader {
       line.number = largest_line_;
       text_.fail(line, fmt::format("vertex index {} is out of range; the file has {} vertices", largest_, vertices));
     }
+    check_range(texcoord_range_, texcoords_.size(), "texture coordinate");
+    check_range(normal_range_, normals_.size(), "normal");
     if (lines_.empty())
       throw InputError(path_ + ": the file has no faces (lines that begin with f); nothing can be rendered");
   }
@@ -239,6 +279,7 @@ class ObjReader {
     for (size_t face = 0; face < lines_.size(); ++face) {
       const size_t begin = begin_[face], end = begin_[face + 1];
       const PolygonShape shape = triangulate(scene_.vertices, &corners_[begin], end - begin, scene_.triangles);
+      if (surfaces_) add_corners_of(begin, end);
       if (shape != PolygonShape::Flat) odd[shape].push_back(lines_[face]);
       const uint32_t material = materials_of_[face] == kNone ? grey : material_of[materials_of_[face]];
       scene_.triangle_materials.resize(scene_.triangles.size(), material);
@@ -248,6 +289,36 @@ class ObjReader {
     }
     if (used_[grey]) scene_.materials.push_back({"default_grey", {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
     warn_of_faces(scene_.warnings, odd, [&](size_t line) { return fmt::format("{}:{}: the face", path_, line); });
+  }
+
+  /// Of the surfaces, for the triangles of the face with these corners, which are those of the scene's end.
+  void add_corners_of(size_t begin, size_t end) {
+    corner_of_.clear();
+    for (size_t corner = end; corner-- > begin;) corner_of_[corners_[corner]] = corner;
+    for (size_t i = surfaces_->triangles.size(); i < scene_.triangles.size(); ++i) {
+      std::array<uint32_t, 3> triangle = scene_.triangles[i];
+      for (uint32_t& vertex : triangle) {
+        const size_t corner = corner_of_.at(vertex);
+        const std::array<uint32_t, 3> key = {vertex, corner_texcoords_[corner], corner_normals_[corner]};
+        const auto [known, is_new] = surface_vertices_.emplace(key, size32(surfaces_->positions));
+        if (is_new) {
+          surfaces_->positions.push_back(scene_.vertices[vertex]);
+          surfaces_->texcoords.push_back(key[1] == kNone ? Texcoord{} : texcoords_[key[1]]);
+          surfaces_->normals.push_back(key[2] == kNone ? Vec3{} : normals_[key[2]]);
+          if (!colours_.empty())
+            surfaces_->colors.push_back(vertex < colours_.size() ? colours_[vertex] : Rgba{1, 1, 1, 1});
+        }
+        vertex = known->second;
+      }
+      surfaces_->triangles.push_back(triangle);
+    }
+  }
+  void add_surfaces() {
+    add_mtl_surfaces(path_, materials_, used_, *surfaces_, scene_.warnings);
+    if (surfaces_->materials.size() < scene_.materials.size())
+      surfaces_->materials.push_back(surface_material(scene_.materials.back().kd, {}));
+    finish(*surfaces_);
+    scene_.surfaces = std::make_shared<const Surfaces>(std::move(*surfaces_));
   }
 
   void add_warnings() {
@@ -264,9 +335,11 @@ class ObjReader {
                                      unknown_.front(), more(unknown_.size())));
     }
     places_.tell_lost_detail(scene_, path_);
-    tell_of_materials(warnings, path_, materials_, used_);
-    tell_loss(warnings, path_, losses_.coloured_faces, "face", Loss::VertexColours);
-    tell_loss(warnings, path_, losses_.faces_with_normals, "face", Loss::VertexNormals);
+    tell_of_materials(warnings, path_, materials_, used_, surfaces_.has_value());
+    if (!surfaces_) {
+      tell_loss(warnings, path_, losses_.coloured_faces, "face", Loss::VertexColours);
+      tell_loss(warnings, path_, losses_.faces_with_normals, "face", Loss::VertexNormals);
+    }
     tell_loss(warnings, path_, losses_.points_and_lines, "element", Loss::PointsOrLines);
     tell_count(warnings, path_, losses_.free_forms, "free-form curve or surface", "not drawn", "not drawn");
   }
@@ -290,12 +363,32 @@ class ObjReader {
   std::vector<bool> used_;  // [material] by a triangle; the last one is the grey
   std::vector<Missing> missing_libraries_;
   std::vector<std::string> unknown_;  // materials that no library has
+
+  // Where surfaces are asked for.
+  struct IndexHash {
+    size_t operator()(const std::array<uint32_t, 3>& indices) const {
+      uint64_t hash = 0;
+      for (const uint32_t index : indices) {
+        hash = (hash ^ index) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 32;
+      }
+      return hash;
+    }
+  };
+  std::optional<Surfaces> surfaces_;
+  std::vector<Texcoord> texcoords_;
+  std::vector<Vec3> normals_;
+  std::vector<Rgba> colours_;                                // [vertex] up to the last one with a colour
+  std::vector<uint32_t> corner_texcoords_, corner_normals_;  // as corners_
+  IndexRange texcoord_range_, normal_range_;
+  std::unordered_map<uint32_t, size_t> corner_of_;                                     // [vertex] of the face at hand
+  std::unordered_map<std::array<uint32_t, 3>, uint32_t, IndexHash> surface_vertices_;  // vertex, texcoord, normal
 };
 
 }  // namespace
 
-Scene load_obj(const std::string& path) {
-  Scene scene = ObjReader(path).read();
+Scene load_obj(const std::string& path, bool surfaces) {
+  Scene scene = ObjReader(path, surfaces).read();
   check_scene(scene, path);
   return scene;
 }

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <filesystem>
 
 #include "files/input_file.hpp"
 #include "isa/input_error.hpp"
@@ -30,6 +32,35 @@ bool read_number(std::string_view word, Number& value) {
 }
 
 }  // namespace
+
+std::string find_named_file(const std::string& folder, std::string name) {
+  namespace fs = std::filesystem;
+  const fs::path inside = folder;
+  const auto is_file = [](const fs::path& path) {
+    std::error_code none;
+    return fs::is_regular_file(path, none);
+  };
+  if (is_file(inside / name)) return (inside / name).string();
+  tell_missing((inside / name).string());
+  std::replace(name.begin(), name.end(), '\\', '/');
+  const fs::path own = inside / name, beside = inside / fs::path(name).filename();
+  for (const fs::path& path : {own, beside}) {
+    if (is_file(path)) return path.string();
+    std::error_code none;
+    for (fs::directory_iterator entry(path.parent_path().empty() ? "." : path.parent_path(), none), end;
+         !none && entry != end; entry.increment(none)) {
+      if (lower_case(entry->path().filename().string()) == lower_case(path.filename().string()) &&
+          is_file(entry->path()))
+        return (path.parent_path() / entry->path().filename()).string();
+    }
+  }
+  return "";
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
 
 std::string_view trimmed(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));

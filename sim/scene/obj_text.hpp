@@ -32,9 +32,14 @@ class ObjText {
   size_t place_ = 0, number_ = 0;
 };
 
+/// The path of a file that another one names: in `folder`, or below it. Exporters of Windows write "\" between folders,
+/// whole paths of the machine that they ran on, and do not mind upper and lower case. Empty: it is nowhere.
+std::string find_named_file(const std::string& folder, std::string name);
+
 /// Takes the next word off the front of `text`; empty at its end.
 std::string_view next_word(std::string_view& text);
 std::vector<std::string_view> words_of(std::string_view text);
+std::string lower_case(std::string text);
 std::string_view trimmed(std::string_view text);
 
 /// Reads a decimal number and nothing after it; the result may be infinite or NaN if the text is.

@@ -9,7 +9,10 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "bits.hpp"
 #include "enum_array.hpp"
@@ -255,8 +258,10 @@ class Values {
 
 class PlyReader {
  public:
-  PlyReader(const std::string& path, const std::string& data)
-      : path_(path), header_(HeaderReader(path, data).read()), values_(path, data, header_) {}
+  PlyReader(const std::string& path, const std::string& data, bool surfaces)
+      : path_(path), header_(HeaderReader(path, data).read()), values_(path, data, header_) {
+    if (surfaces) surfaces_.emplace();
+  }
 
   Scene read() {
     for (const Element& element : header_.elements) {
@@ -278,10 +283,11 @@ class PlyReader {
       scene_.warnings.push_back(
           fmt::format("{}: {} bytes behind the last element are not read", path_, values_.bytes_left()));
     }
-    if (has_normals_) tell_loss(scene_.warnings, path_, faces_, "face", Loss::VertexNormals);
+    if (has_normals_ && !surfaces_) tell_loss(scene_.warnings, path_, faces_, "face", Loss::VertexNormals);
     tell_loss(scene_.warnings, path_, points_and_lines_, "element", Loss::PointsOrLines);
     warn_of_faces(scene_.warnings, odd_faces_, [&](size_t face) { return fmt::format("{}: face {}", path_, face); });
     scene_.name = std::filesystem::path(path_).stem().string();
+    if (surfaces_) add_surfaces();
     return std::move(scene_);
   }
 
@@ -327,6 +333,7 @@ class PlyReader {
         throw InputError(fmt::format("{}: vertices have no '{}'; export the file again", path_, axes[i]));
     }
     has_normals_ = find(element, {"nx"}, false) >= 0;
+    const VertexPlaces more = surfaces_ ? vertex_places(element) : VertexPlaces();
     for (const int axis : place)
       single_ = single_ || (header_.format != Format::Text && element.properties[axis].type == Type::Float);
     const bool coloured = colour[0] >= 0 && colour[1] >= 0 && colour[2] >= 0;
@@ -348,7 +355,63 @@ class PlyReader {
       }
       places_.add(p);
       if (coloured) colours_.push_back(c);
+      if (surfaces_) add_vertex(element, values, more, coloured ? &c : nullptr);
     }
+  }
+
+  /// Where properties of vertices are that only surfaces have; none: -1.
+  struct VertexPlaces {
+    std::array<int, 3> normal{-1, -1, -1};
+    std::array<int, 2> texcoord{-1, -1};
+    int alpha = -1;
+  };
+  static VertexPlaces vertex_places(const Element& element) {
+    VertexPlaces places;
+    places.normal = {find(element, {"nx"}, false), find(element, {"ny"}, false), find(element, {"nz"}, false)};
+    places.texcoord = {find(element, {"s", "u", "texture_u"}, false), find(element, {"t", "v", "texture_v"}, false)};
+    places.alpha = find(element, {"alpha", "a"}, false);
+    if (*std::min_element(places.normal.begin(), places.normal.end()) < 0) places.normal.fill(-1);
+    if (std::min(places.texcoord[0], places.texcoord[1]) < 0) places.texcoord.fill(-1);
+    return places;
+  }
+  /// With a colour: it is sRGB.
+  void add_vertex(const Element& element, const std::vector<std::vector<double>>& values, const VertexPlaces& places,
+                  const Vec3d* colour) {
+    const auto number = [&](int place) { return values[static_cast<size_t>(place)][0]; };
+    Vec3 normal;
+    if (places.normal[0] >= 0) {
+      for (int i = 0; i < 3; ++i) normal[i] = static_cast<float>(number(places.normal[static_cast<size_t>(i)]));
+    }
+    surfaces_->normals.push_back(normal);
+    if (places.texcoord[0] >= 0) {
+      Texcoord texcoord{};
+      for (size_t i = 0; i < 2; ++i) {
+        const double value = number(places.texcoord[i]);
+        if (!(std::fabs(value) <= kLargestCoordinate))
+          values_.fail(fmt::format("has the texture coordinate {}", value));
+        texcoord[i] = static_cast<float>(i == 0 ? value : 1 - value);
+      }
+      surfaces_->texcoords.push_back(texcoord);
+    }
+    if (colour == nullptr) return;
+    Rgba rgba{0, 0, 0, 1};
+    for (int i = 0; i < 3; ++i) rgba[static_cast<size_t>(i)] = static_cast<float>(srgb_to_linear((*colour)[i]));
+    if (places.alpha >= 0) {
+      const double alpha = number(places.alpha) / kWhite[element.properties[static_cast<size_t>(places.alpha)].type];
+      if (!(alpha >= 0 && alpha <= 1)) values_.fail(fmt::format("has the alpha {}", number(places.alpha)));
+      rgba[3] = static_cast<float>(alpha);
+    }
+    surfaces_->colors.push_back(rgba);
+  }
+
+  void add_surfaces() {
+    Surfaces& surfaces = *surfaces_;
+    surfaces.triangles = scene_.triangles;
+    surfaces.positions = scene_.vertices;
+    for (const Material& material : scene_.materials)
+      surfaces.materials.push_back(surfaces.colors.empty() ? surface_material(material.kd, {}) : SurfaceMaterial());
+    finish(surfaces);
+    scene_.surfaces = std::make_shared<const Surfaces>(std::move(surfaces));
   }
 
   void read_faces(const Element& element) {
@@ -437,11 +500,6 @@ class PlyReader {
     return added.first->second;
   }
 
-  /// IEC 61966-2-1.
-  static double srgb_to_linear(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-  }
-
   const std::string& path_;
   const Header header_;
   Values values_;
@@ -456,15 +514,16 @@ class PlyReader {
   std::map<std::array<int, 3>, uint32_t> materials_;  // by colour
   std::map<PolygonShape, std::vector<size_t>> odd_faces_;
   bool has_normals_ = false;
+  std::optional<Surfaces> surfaces_;  // where they are asked for
   size_t faces_ = 0, points_and_lines_ = 0;
 };
 
 }  // namespace
 
-Scene load_ply(const std::string& path) {
+Scene load_ply(const std::string& path, bool surfaces) {
   std::string data = read_text_file(path, "PLY file");
   if (HeaderReader(path, data).read().format == Format::Text) use_line_feeds(data);
-  Scene scene = PlyReader(path, data).read();
+  Scene scene = PlyReader(path, data, surfaces).read();
   weld_vertices(scene);
   check_scene(scene, path);
   return scene;

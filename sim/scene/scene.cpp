@@ -123,19 +123,19 @@ constexpr float kLeastDiagonal = 1e-18f;
 
 constexpr const char* kScenes = "cornell, room, or the path of a .obj, .gltf, .glb or .ply file";
 
-SceneFile load_file(const std::string& path, const std::string& camera) {
+SceneFile load_file(const std::string& path, const std::string& camera, bool surfaces) {
   if (std::error_code none; !std::filesystem::exists(path, none)) {
     throw InputError(fmt::format("{}: no such scene{}", path,
                                  did_you_mean(path, {"cornell", "room"}, fmt::format("give {}", kScenes))));
   }
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (ending == ".gltf" || ending == ".glb") return load_gltf(path, camera);
+  if (ending == ".gltf" || ending == ".glb") return load_gltf(path, camera, surfaces);
   SceneFile file;
   if (ending == ".obj") {
-    file.scene = load_obj(path);
+    file.scene = load_obj(path, surfaces);
   } else if (ending == ".ply") {
-    file.scene = load_ply(path);
+    file.scene = load_ply(path, surfaces);
   } else {
     throw InputError(fmt::format("{}: a scene cannot be read from this; give {}", path, kScenes));
   }
@@ -179,9 +179,10 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
     throw InputError(fmt::format("{}: --camera is for glTF files; leave it out", name_or_path));
   SceneFile file;
   if (!built_in) {
-    const auto read = [&] { return load_file(name_or_path, options.camera); };
+    const auto read = [&] { return load_file(name_or_path, options.camera, options.surfaces); };
     const std::optional<SceneCache>& cache = SceneCache::of_program();
-    file = cache ? cache->file(name_or_path, options.camera, read) : read();
+    // The cache keeps no surfaces: textures are as quickly decoded as found.
+    file = cache && !options.surfaces ? cache->file(name_or_path, options.camera, read) : read();
     if (const float size = file.scene.bounds().diagonal(); size > 0 && size < kLeastDiagonal) {
       file.scene.warnings.push_back(fmt::format(
           "{}: all of it is {:.2g} across, too small for single precision: its shading is wrong; scale the file up",
@@ -191,6 +192,7 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
     file.scene = name_or_path == "room" ? make_room(options.detail) : make_cornell(options.detail);
   }
   Scene& scene = file.scene;
+  if (options.surfaces && !scene.surfaces) scene.surfaces = std::make_shared<const Surfaces>(surfaces_of(scene));
   View view = scene.view();
   const ViewChanges changes = options.changes.around(scene.centre);
   if (!options.view.empty()) view = load_view(options.view, scene.centre);

@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/configuration.hpp"
+#include "scene/surfaces.hpp"
 #include "scene/vec.hpp"
 
 namespace raypool {
@@ -58,6 +60,7 @@ struct Scene {
   std::vector<std::string> warnings;  ///< a sentence each: what of a file could not be drawn as it is
   Vec3d
       centre;  ///< what all places are counted from, in the file's coordinates: zero unless recentred (far_places.hpp)
+  std::shared_ptr<const Surfaces> surfaces;  ///< null unless SceneOptions ask for them
 
   const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][k]]; }
   /// Of unit length, on the side from which the corners turn left.
@@ -97,6 +100,8 @@ struct SceneOptions {
   std::string view;     ///< view file; empty: the scene's own camera and light, or for a file without automatic_view()
   FileViewChanges changes;
   std::string camera;  ///< of a glTF file, by name; empty: its first one
+  /// Scene::surfaces get what only shader sets see of a file; its warnings are then of what they do not see either.
+  bool surfaces = false;
 };
 
 /// `name_or_path` is "cornell", "room" or the path of a file; its ending gives its format. Throws InputError.
@@ -110,8 +115,8 @@ Scene make_room(double detail = 1.0);
 
 /// Reads Wavefront OBJ with its MTL files; polygons become triangles (scene/polygon.hpp),
 /// faces without a material a grey one.
-/// Sets no camera and no light. Throws InputError naming file and line.
-Scene load_obj(const std::string& path);
+/// Sets no camera and no light; `surfaces` as SceneOptions have it. Throws InputError naming file and line.
+Scene load_obj(const std::string& path, bool surfaces = false);
 /// Writes `path` and, beside it with the ending .mtl, its materials; load_obj reads the same
 /// triangles and materials back, bit for bit.
 void write_obj(const Scene& scene, const std::string& path);
