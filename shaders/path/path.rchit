@@ -95,7 +95,6 @@ void main() {
     found *= share(density, raypool_light_likelihood(ray, gl_HitTEXT, hit.normal, material.emission,
                                                      material.emission_texture));
   }
-  if (sky && hit.depth == 1u) found -= raypool_frame.background;
   found *= path.weight;
 
   // The surface.
@@ -116,7 +115,7 @@ void main() {
   float bounce_density = 0.0;
   bool leaves = true;  // on the side from which the ray came
   // And what the shadow ray brings: the sky from where the path goes on to, or a light.
-  vec3 shadow_direction;
+  vec3 shadow_direction = vec3(0.0);
   float shadow_limit = 1.0;
   bool to_sky = sky;
   float sky_share = 1.0;

@@ -52,7 +52,7 @@ void main() {
   const float lamp = dot(direction, face) > 0.0 ? max(dot(direction, normal), 0.0) : 0.0;
   const float facing = clamp(-dot(ray, normal) * inversesqrt(dot(ray, ray)), 0.0, 1.0);
   contribution = (0.6 * stopped * lamp) * color.rgb;
-  const vec3 seen = stopped * ((0.35 * facing + 0.12) * color.rgb + emission - background(pixel));
+  const vec3 seen = stopped * max((0.35 * facing + 0.12) * color.rgb + emission - background(pixel), vec3(0.0));
   weight -= stopped;
 
   // Nothing of the hit is needed after the first ray has left, so nothing of it has to be kept.
