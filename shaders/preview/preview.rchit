@@ -9,7 +9,7 @@
 #include "background.glsl"
 
 // How far shadows reach, as a share of the scene's size: a ceiling far above leaves the floor lit.
-layout(constant_id = 0) const float reach = 0.15;
+layout(constant_id = 0) const float reach = 0.1;
 
 layout(location = 0) rayPayloadInEXT float weight;
 layout(location = 1) rayPayloadEXT vec3 contribution;
@@ -44,10 +44,12 @@ void main() {
   if (dot(normal, face) < 0.0) normal = -normal;
 
   vec3 direction = to_lamp();
+  float limit = reach * raypool_frame.far;
   if (raypool_frame.samples > 1u) {
-    // A lamp of some size, for soft shadows.
+    // A lamp of some size, for soft shadows, which fade out where they end.
     const uint seed = raypool_seed(pixel, hit.depth);
     direction = normalize(0.3 * random_direction(raypool_random(seed, 0u), raypool_random(seed, 1u)) + direction);
+    limit *= 2.0 * raypool_random(seed, 2u);
   }
   const float lamp = dot(direction, face) > 0.0 ? max(dot(direction, normal), 0.0) : 0.0;
   const float facing = clamp(-dot(ray, normal) * inversesqrt(dot(ray, ray)), 0.0, 1.0);
@@ -61,7 +63,7 @@ void main() {
   if (weight > 0.0) traceRayEXT(raypool_tree, gl_RayFlagsNoneEXT, 0xffu, 0u, 0u, 0u, behind, 0.0, ray, 1e30, 0);
   if (contribution != vec3(0.0)) {
     traceRayEXT(raypool_tree, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 0u, 0u, 0u,
-                before, 0.0, direction, reach * raypool_frame.far, 1);
+                before, 0.0, direction, limit, 1);
   }
   if (stopped > 0.0) imageStore(raypool_picture, ivec2(pixel), vec4(seen, 1.0));
 }
