@@ -1,0 +1,69 @@
+#version 460
+// Light from the viewer's side, which needs no ray, shows every surface; a shadow ray to a lamp above the viewer's left
+// shoulder shows where surfaces touch. What is cut out, and the share that a transparent surface lets through, the ray
+// sees from there on.
+#extension GL_EXT_ray_tracing : require
+#extension GL_GOOGLE_include_directive : require
+#include "raypool.glsl"
+#include "sampling.glsl"
+#include "background.glsl"
+
+// How far shadows reach, as a share of the scene's size: a ceiling far above leaves the floor lit.
+layout(constant_id = 0) const float reach = 0.1;
+
+layout(location = 0) rayPayloadInEXT float weight;
+layout(location = 1) rayPayloadEXT vec3 contribution;
+hitAttributeEXT RaypoolHit hit;
+
+// The share of light that the surface stops.
+float coverage(RaypoolMaterial material, float alpha) {
+  if (material.alpha_mode == RAYPOOL_CUT_OUT) return alpha < material.alpha_cutoff ? 0.0 : 1.0;
+  return (material.alpha_mode == RAYPOOL_BLEND ? alpha : 1.0) * (1.0 - 0.75 * material.transmission);
+}
+
+vec3 to_lamp() {
+  const vec2 half_size = vec2(raypool_frame.width, raypool_frame.height) * 0.5 - 0.5;
+  const vec3 forward = half_size.y * raypool_frame.step_y + (half_size.x * raypool_frame.step_x + raypool_frame.corner);
+  const vec3 up_left = -0.5 * normalize(raypool_frame.step_x) - 0.9 * normalize(raypool_frame.step_y);
+  return normalize(up_left - 0.7 * normalize(forward));
+}
+
+void main() {
+  const uvec2 pixel = gl_LaunchIDEXT.xy;
+  const uint triangle = uint(gl_PrimitiveID);
+  const RaypoolMaterial material = raypool_material(hit.material);
+  const vec2 texcoord = raypool_texcoord(triangle, hit.barycentrics);
+  const vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(material.base_color, material.alpha) *
+                     raypool_texture(material.base_color_texture, texcoord);
+  const vec3 emission = material.emission * raypool_texture(material.emission_texture, texcoord).rgb;
+  const float stopped = weight * coverage(material, color.a);
+
+  const vec3 ray = gl_WorldRayDirectionEXT;
+  const vec3 face = dot(ray, hit.normal) > 0.0 ? -hit.normal : hit.normal;
+  vec3 normal = raypool_normal(triangle, hit.barycentrics);
+  if (dot(normal, face) < 0.0) normal = -normal;
+
+  vec3 direction = to_lamp();
+  float limit = reach * raypool_frame.far;
+  if (raypool_frame.samples > 1u) {
+    // A lamp of some size, for soft shadows, which fade out where they end.
+    const uint seed = raypool_seed(pixel, hit.depth);
+    direction = normalize(0.3 * random_direction(raypool_random(seed, 0u), raypool_random(seed, 1u)) + direction);
+    limit *= 2.0 * raypool_random(seed, 2u);
+  }
+  const float lamp = dot(direction, face) > 0.0 ? max(dot(direction, normal), 0.0) : 0.0;
+  const float facing = clamp(-dot(ray, normal) * inversesqrt(dot(ray, ray)), 0.0, 1.0);
+  contribution = (0.6 * stopped * lamp) * color.rgb;
+  const vec3 seen = stopped * max((0.35 * facing + 0.12) * color.rgb + emission - background(pixel), vec3(0.0));
+  weight -= stopped;
+
+  // Nothing of the hit is needed after the first ray has left, so nothing of it has to be kept.
+  const vec3 before = raypool_offset_origin(gl_WorldRayOriginEXT, ray, gl_HitTEXT, face);
+  const vec3 behind = raypool_offset_origin(gl_WorldRayOriginEXT, ray, gl_HitTEXT, -face);
+  if (weight > 0.0) traceRayEXT(raypool_tree, gl_RayFlagsNoneEXT, 0xffu, 0u, 0u, 0u, behind, 0.0, ray, 1e30, 0);
+  if (contribution != vec3(0.0)) {
+    traceRayEXT(raypool_tree, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 0u, 0u, 0u,
+                before, 0.0, direction, limit, 1);
+  }
+  if (stopped > 0.0) imageStore(raypool_picture, ivec2(pixel), vec4(seen, 1.0));
+}
