@@ -1,0 +1,13 @@
+// expect: double
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "raypool.glsl"
+
+layout(location = 0) rayPayloadInEXT vec3 color;
+layout(location = 1) rayPayloadEXT vec3 light;
+hitAttributeEXT RaypoolHit hit;
+
+void main() {
+  const double half_way = double(hit.barycentrics.x) * 0.5LF;  // here
+  light = vec3(float(half_way));
+}

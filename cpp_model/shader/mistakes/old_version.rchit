@@ -1,0 +1,4 @@
+// expect: version
+#version 330
+
+void main() {}

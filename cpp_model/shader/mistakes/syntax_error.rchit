@@ -1,0 +1,14 @@
+// expect: syntax error
+// expect: syntax_error.rchit:13
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "raypool.glsl"
+
+layout(location = 0) rayPayloadInEXT vec3 color;
+layout(location = 1) rayPayloadEXT vec3 light;
+hitAttributeEXT RaypoolHit hit;
+
+void main() {
+  light = vec3(1.0)
+  color = light;  // here, where a semicolon is missed
+}

@@ -1,0 +1,12 @@
+// expect: textureGather
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "raypool.glsl"
+
+layout(location = 0) rayPayloadInEXT vec3 color;
+layout(location = 1) rayPayloadEXT vec3 light;
+hitAttributeEXT RaypoolHit hit;
+
+void main() {
+  light = textureGather(raypool_textures[0], hit.barycentrics).rgb;  // here
+}

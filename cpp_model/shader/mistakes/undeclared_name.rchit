@@ -1,0 +1,13 @@
+// expect: undeclared identifier
+// expect: undeclared_name.rchit:12
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "raypool.glsl"
+
+layout(location = 0) rayPayloadInEXT vec3 color;
+layout(location = 1) rayPayloadEXT vec3 light;
+hitAttributeEXT RaypoolHit hit;
+
+void main() {
+  light = colour;  // here
+}
