@@ -163,6 +163,7 @@ struct FunctionRunner::Builder {
     loop_at = label_at;
     for (const Op& op : function.ops) {
       if (op.kind == Op::Kind::Instruction && is_triple(*op.info)) step_of(op.info->opcode);
+      if (op.kind != Op::Kind::Instruction) continue;
       if (const int written = effects(op).register_defined; written != kNothing) ++definitions[index(written)];
     }
     for (const Op& op : function.ops) find_constants(op);
@@ -252,6 +253,7 @@ struct FunctionRunner::Builder {
         instruction(op);
         continue;
       }
+      if (op.kind == Op::Kind::Undefined) continue;
       close();
       known = {};
       if (op.kind == Op::Kind::LoopEnd) {

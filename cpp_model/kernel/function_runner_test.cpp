@@ -133,6 +133,10 @@ class Written {
 
 TEST(FunctionRunner, ARegisterThatWasNeverWrittenIsUndefinedInEveryRun) {
   Written written(1, 1);
+  Op declaration;
+  declaration.kind = Op::Kind::Undefined;
+  declaration.rd = 0;
+  written.function.ops.push_back(declaration);
   written.add(Opcode::Rin);
   Op& store = written.add(Opcode::Rst);
   store.rb = 0;
