@@ -1,10 +1,7 @@
-// The ray kernels, compiled and native.
+// The ray kernels as C++.
 #include "kernel/kernels.hpp"
 
-#include <fmt/format.h>
-
 #include "kernel/ray_kernels.hpp"
-#include "kernel/record_layout.hpp"
 
 namespace raypool {
 namespace {
@@ -35,39 +32,6 @@ void run_in_mode(RayKernel which, NativeThread& thread) {
   }
 }
 
-std::string name_of(RayKernel which) { return std::string(kRayKernelNames[which]); }
-
-/// `compact`: what they import lacks the words that none of them needs.
-template <typename Visit>
-void for_each_kernel(bool compact, const Visit& visit) {
-  visit(RayKernel::CastEye, [](auto& k) { kernel::cast_eye(k); });
-  visit(RayKernel::CastSecondary, [&](auto& k) { kernel::cast_secondary(k, compact); });
-  visit(RayKernel::CastSecondaryDirect, [](auto& k) { kernel::cast_secondary_direct(k); });
-  visit(RayKernel::Shade, [](auto& k) { kernel::shade(k); });
-}
-
-struct Compiled {
-  Program program;
-  RecordLayout layout;  // of what the kernels import
-};
-
-Compiled compile_all(const KernelTarget& target) {
-  Compiled all;
-  if (target.compact) {
-    std::vector<kernel::Function> kernels;
-    for_each_kernel(true, [&](RayKernel which, const auto& body) {
-      kernels.push_back(kernel::record_kernel(name_of(which), body, target));
-    });
-    all.layout = kernel::compact_layout(kernels);
-  }
-  for_each_kernel(target.compact, [&](RayKernel which, const auto& body) {
-    kernel::add_kernel(all.program, name_of(which), body, target, all.layout);
-  });
-  return all;
-}
-
-const Compiled& compiled(const KernelTarget& target) { return program_for(target, compile_all); }
-
 }  // namespace
 
 void run_native(RayKernel which, NativeThread& thread) {
@@ -86,20 +50,6 @@ std::vector<RayKernel> kernels_of(const ChipConfiguration& chip, int depth, bool
   if (chip.culling && secondary != RayKernel::CastSecondaryDirect) kernels.push_back(RayKernel::CastSecondaryDirect);
   if (chip.shading == Shading::Kernel) kernels.push_back(RayKernel::Shade);
   return kernels;
-}
-
-const Program& ray_kernel_program(const KernelTarget& target) { return compiled(target).program; }
-
-RecordLayout ray_record_layout(const Configuration& configuration) {
-  RecordLayout layout = compiled(KernelTarget(configuration)).layout;
-  if (layout.words > configuration.intersection_words) {
-    throw InputError(fmt::format(
-        "configuration {}: intersection_words is {}, but the ray kernels need {} words of an "
-        "intersection; it must lie in {} .. {}",
-        configuration.name, configuration.intersection_words, layout.words, layout.words, kIntersectionWords));
-  }
-  layout.words = configuration.intersection_words;
-  return layout;
 }
 
 }  // namespace raypool

@@ -44,12 +44,12 @@ inline constexpr int kTileWidthLog2 =
 inline constexpr int kTileMask = 20;  ///< integer: tile width - 1
 inline constexpr int kWidth = 21;     ///< integer: image width, pixels
 inline constexpr int kHeight = 22;    ///< integer: image height, pixels
-inline constexpr int kCount = 23;
+inline constexpr int kSample = 23;    ///< integer: number of the sample, from 0, of a picture of several frames
+inline constexpr int kCount = 24;
 }  // namespace argument
 // CastEye is launched with block word = x of the tile's first pixel | y << 16. Pixels outside the image export nothing.
 
-/// All ray kernels in one program, for such machines. Throws InputError (with kernel and line)
-/// when registers or predicates do not suffice.
+/// The built-in ray kernels in one program, for such machines (ray_program.hpp).
 const Program& ray_kernel_program(const KernelTarget& target = {});
 /// Of the intersections that they import. Throws InputError when the configuration's have too few words.
 RecordLayout ray_record_layout(const Configuration& configuration);

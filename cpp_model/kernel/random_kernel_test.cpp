@@ -6,6 +6,7 @@
 
 #include "bits.hpp"
 #include "isa/assembler.hpp"
+#include "kernel/function_runner.hpp"
 #include "kernel/kernel.hpp"
 #include "kernel/test_interpreter.hpp"
 #include "random.hpp"
@@ -352,6 +353,11 @@ struct Outcome {
   int triples = 0;  // that the kernels have
 };
 
+Function recorded(uint32_t seed, const KernelTarget& target) {
+  return record_kernel(
+      "random", [&](RecordedKernel& k) { RandomKernel<RecordedKernel>(k, seed).run(); }, target);
+}
+
 Program compiled(uint32_t seed, const KernelTarget& target) {
   Program program;
   program.code.assign(seed % 5, 0);  // entries are not always 0
@@ -379,6 +385,52 @@ void run_random(NativeThread& thread, uint32_t seed) {
                        : run_random<kSubnormals, kFused, false>(thread, seed);
 }
 
+/// Words of a memory, and packages, that threads of a random kernel begin with.
+struct Beginning {
+  Memory memory{kMemoryBytes};
+  std::array<uint32_t, kArguments> arguments{};
+  std::array<Intersection, test::Interpreter::kLanes> input{};
+  arith::Mode mode;
+  uint32_t threads = 0;
+
+  explicit Beginning(uint32_t seed) {
+    Random random(seed);
+    for (uint32_t address = 0; address < kMemoryBytes; address += 4) memory.store(address, random());
+    for (uint32_t& word : arguments) word = static_cast<uint32_t>(random() % 100);
+    for (auto& package : input) {
+      for (uint32_t& word : package) {
+        const float value = (static_cast<int>(random() % 4001) - 2000) / 256.0f;
+        word = random() % 16 == 0 ? random() : as_bits(value);
+      }
+    }
+    mode.subnormals = seed % 2 != 0 ? Subnormals::Flush : Subnormals::Ieee;
+    mode.fused = seed % 3 == 0;
+    if (seed % 5 == 0) mode.significand = arith::kLeastSignificand + seed % 13;
+    threads = 1 + seed % test::Interpreter::kLanes;
+  }
+
+  NativeThread thread(uint32_t lane, Memory& of) const {
+    NativeThread thread;
+    thread.thread = lane;
+    thread.threads = threads;
+    thread.arguments = &arguments;
+    thread.memory = &of;
+    thread.mode = mode;
+    thread.input = input[lane];
+    return thread;
+  }
+};
+
+void run_as_source(NativeThread& thread, uint32_t seed) {
+  if (thread.mode.subnormals == Subnormals::Flush) {
+    thread.mode.fused ? run_random<Subnormals::Flush, true>(thread, seed)
+                      : run_random<Subnormals::Flush, false>(thread, seed);
+  } else {
+    thread.mode.fused ? run_random<Subnormals::Ieee, true>(thread, seed)
+                      : run_random<Subnormals::Ieee, false>(thread, seed);
+  }
+}
+
 void compare(uint32_t seed, Outcome& outcome) {
   const bool fused = seed % 3 == 0, triples = seed % 4 >= 2;
   Program program;
@@ -395,39 +447,19 @@ void compare(uint32_t seed, Outcome& outcome) {
   ASSERT_TRUE(triples || triples_of(program) == 0) << "seed " << seed;
   ASSERT_EQ(assemble(listing(program), "listing").code, program.code) << "seed " << seed;
 
+  const Beginning begin(seed);
   test::Interpreter machine;
-  Random random(seed);
-  machine.memory = Memory(kMemoryBytes);
-  for (uint32_t address = 0; address < kMemoryBytes; address += 4) machine.memory.store(address, random());
-  for (uint32_t& word : machine.arguments) word = static_cast<uint32_t>(random() % 100);
-  for (auto& package : machine.input) {
-    for (size_t i = 0; i < package.size(); ++i) {
-      const float value = (static_cast<int>(random() % 4001) - 2000) / 256.0f;
-      package[i] = random() % 16 == 0 ? random() : as_bits(value);
-    }
-  }
-  machine.mode.subnormals = seed % 2 != 0 ? Subnormals::Flush : Subnormals::Ieee;
-  machine.mode.fused = fused;
-  if (seed % 5 == 0) machine.mode.significand = arith::kLeastSignificand + seed % 13;
-  machine.threads = 1 + seed % test::Interpreter::kLanes;
+  machine.memory = begin.memory;
+  machine.arguments = begin.arguments;
+  machine.input = begin.input;
+  machine.mode = begin.mode;
+  machine.threads = begin.threads;
   Memory native_memory = machine.memory;
   machine.run(program, program.entries["random"]);
 
   for (uint32_t lane = 0; lane < machine.threads; ++lane) {
-    NativeThread thread;
-    thread.thread = lane;
-    thread.threads = machine.threads;
-    thread.arguments = &machine.arguments;
-    thread.memory = &native_memory;
-    thread.mode = machine.mode;
-    thread.input = machine.input[lane];
-    if (thread.mode.subnormals == Subnormals::Flush) {
-      thread.mode.fused ? run_random<Subnormals::Flush, true>(thread, seed)
-                        : run_random<Subnormals::Flush, false>(thread, seed);
-    } else {
-      thread.mode.fused ? run_random<Subnormals::Ieee, true>(thread, seed)
-                        : run_random<Subnormals::Ieee, false>(thread, seed);
-    }
+    NativeThread thread = begin.thread(lane, native_memory);
+    run_as_source(thread, seed);
     ASSERT_EQ(thread.rays, machine.rays[lane]) << "seed " << seed << ", thread " << lane << "\n" << listing(program);
   }
   for (uint32_t address = 0; address < kMemoryBytes; address += 4) {
@@ -446,6 +478,23 @@ TEST(RandomKernel, MachineCodeLeavesWhatTheSourceRunAsCppLeaves) {
   // Large ones may need more registers than there are; but a compiler that gives up easily would show here.
   EXPECT_GT(outcome.compiled, 1350) << outcome.refused << " refused";
   EXPECT_GT(outcome.triples, 400);
+}
+
+TEST(RandomKernel, IntermediateCodeLeavesWhatTheSourceRunAsCppLeaves) {
+  for (uint32_t seed = 1; seed <= 3000; ++seed) {
+    const Beginning begin(seed);
+    const FunctionRunner runner(recorded(seed, KernelTarget(begin.mode.fused, false)));
+    Memory source_memory = begin.memory, runner_memory = begin.memory;
+    for (uint32_t lane = 0; lane < begin.threads; ++lane) {
+      NativeThread source = begin.thread(lane, source_memory), thread = begin.thread(lane, runner_memory);
+      run_as_source(source, seed);
+      runner.run(thread);
+      ASSERT_EQ(thread.rays, source.rays) << "seed " << seed << ", thread " << lane;
+    }
+    for (uint32_t address = 0; address < kMemoryBytes; address += 4) {
+      ASSERT_EQ(runner_memory.load(address), source_memory.load(address)) << "seed " << seed << ", address " << address;
+    }
+  }
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 #include "kernel/record_layout.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <climits>
 
+#include "isa/input_error.hpp"
 #include "kernel/compiler.hpp"
 
 namespace raypool::kernel {
@@ -78,6 +81,17 @@ RecordLayout compact_layout(const std::vector<Function>& kernels) {
     layout.words = std::max(layout.words, place + 1);
   }
   return layout;
+}
+
+void place_words(Function& kernel, const RecordLayout& layout) {
+  for (Op& op : kernel.ops) {
+    if (!(is(op, Opcode::Rld) || is(op, Opcode::Rst)) || op.word < kRayWords) continue;
+    const uint8_t place = layout.place.at(op.word);
+    if (place == RecordLayout::kAbsent)
+      throw InputError(
+          fmt::format("{}: ray word {} is not in the compact record", to_string(op.where), static_cast<int>(op.word)));
+    op.word = place;
+  }
 }
 
 }  // namespace raypool::kernel

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
+// The ray kernels that a frame is drawn with: the built-in ones, or others that take their places.
+#pragma once
+
+#include <functional>
+
+#include "config/configuration.hpp"
+#include "enum_array.hpp"
+#include "isa/program.hpp"
+#include "kernel/intermediate.hpp"
+#include "kernel/kernels.hpp"
+#include "kernel/target.hpp"
+#include "machine/chip/ray_kernel.hpp"
+#include "machine/common/packages.hpp"
+
+namespace raypool {
+
+using RayFunctions = EnumArray<RayKernel, kernel::Function, kRayKernels>;
+
+struct RayProgram {
+  Program program;         ///< with entries of kRayKernelNames
+  RecordLayout layout;     ///< of the intersections that the kernels import; compact where the target is
+  RayFunctions functions;  ///< what the program was compiled from, with words of whole intersections
+  /// Runs one thread of a kernel without a machine, with the program's bits; from several threads of C++ at once too.
+  std::function<void(RayKernel, NativeThread&)> native;
+};
+
+/// The program of these kernels, which are recorded with whole intersections; natively they run from their intermediate
+/// code. Throws InputError, with kernel and line, when one of them does not fit into registers, predicates or a
+/// program.
+RayProgram make_ray_program(RayFunctions functions, const KernelTarget& target);
+
+/// Those of ray_kernels.hpp, which run natively as C++.
+const RayProgram& built_in_ray_program(const KernelTarget& target = {});
+
+/// Of a configuration's machines. Throws InputError when they have fewer words than the kernels need.
+RecordLayout record_layout(const RayProgram& program, const Configuration& configuration);
+
+}  // namespace raypool
