@@ -23,6 +23,8 @@ export SCENE ?= room
 export SIZE ?= 200x200
 #:   DEPTH=N                       1: eye and shadow rays; more: reflections
 export DEPTH ?= 3
+#:   SHADERS=FOLDER                GLSL shaders that draw                      the built-in kernels
+#:   SPP=N                         SHADERS: frames that add up to the picture  1
 #:   CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, [best_]NwMc, file
 export CONFIG ?= 8w8c
 #:   ENGINE=native|estimate|functional|sampled|model|rtl|lockstep
@@ -87,9 +89,9 @@ OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/
 DRAWS := $(if $(or $(wildcard $(RAYPOOL)),$(filter estimate sampled,$(ENGINE))),raypool,raypool-sim)
 # built PROGRAM,WORDS: builds it, and prints WORDS where it is not there yet.
 built = @[ -x $(BUILD)/$1 ] || echo 'building $2'; scripts/build.sh $(BUILD) $1
-# options NAMES: of each variable that is set the option, --look-at for LOOK_AT, --units for CUS. A value stays one
+# options NAMES: of each variable that is set the option, --look-at for LOOK_AT, --units for CUS, --samples for SPP. A value stays one
 # word, and behind the equals sign it may begin with a minus.
-options = $(shell for name in $1; do option=$${name/CUS/units} option=$${option,,}; \
+options = $(shell for name in $1; do option=$${name/CUS/units} option=$${option/SPP/samples} option=$${option,,}; \
   printf '$${%s:+"--%s=$$%s"} ' $$name $${option//_/-} $$name; done)
 # What is seen of a scene; the frame that is drawn, whatever draws it.
 LOOK := VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL
@@ -148,7 +150,7 @@ help-all: ## every target and variable
 sim: setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
 	$(call built,$(DRAWS),what draws; the first time this takes about two minutes)
 	@RAYPOOL=$(BUILD)/$(DRAWS) $(UNIT_OF_ENGINE) $(OF_FRAME)
-	@$(BUILD)/$(DRAWS) sim $(call options,$(FRAME) ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
+	@$(BUILD)/$(DRAWS) sim $(call options,$(FRAME) SHADERS SPP ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
 	  $(if $(filter sampled,$(ENGINE)),SEED)) $(WAVES_FLAG) $(TRACE_FLAG) $(ARGS)
 
 #: variables of make compare:  A=FOLDER|REPORT  B=FOLDER|REPORT

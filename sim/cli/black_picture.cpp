@@ -20,11 +20,12 @@ std::string why_nothing_is_seen(const Scene& scene, EyeOf eye) {
 
 }  // namespace
 
-std::string why_black(const FrameBuffer& frame, const RayCounts& rays, const Scene& scene, EyeOf eye) {
+std::string why_black(const FrameBuffer& frame, const RayCounts& rays, const Scene& scene, EyeOf eye, bool shaders) {
   const std::vector<uint8_t> picture = to_rgb8(frame);
   if (std::any_of(picture.begin(), picture.end(), [](uint8_t value) { return value != 0; })) return "";
   const std::string black = "the picture is all black: ";
   if (rays.eye.ended == rays.eye.traced) return black + why_nothing_is_seen(scene, eye);
+  if (shaders) return black + "its shaders add nothing to it that is light enough to show; look at what they store";
   if (rays.shadow.futile == rays.shadow.traced) {
     return black +
            "no light reaches what the eye sees, which is in shadow, faces away or is black (Kd 0); move the light with "

@@ -13,8 +13,19 @@
 #include "cli/scene_loading.hpp"
 #include "machine/common/memory.hpp"
 #include "machine/compute/compute_unit.hpp"
+#include "scene/shader_memory.hpp"
+#include "shader/shader_set.hpp"
 
 namespace raypool {
+
+/// The frames of a picture have numbers of so many bits.
+inline constexpr int kMostSamples = 65535;
+
+/// What `--shaders` names becomes a set, and the set's bindings memory. Empty: the program draws with no shaders.
+struct ShaderSource {
+  std::function<std::shared_ptr<const shader::ShaderSet>(const std::string& folder)> load;
+  std::function<shader::Resources(MemoryImage&, const Scene&, const shader::ShaderSet&, const ShaderFrame&)> memory;
+};
 
 /// `raypool sim`
 struct SimOptions {
@@ -36,6 +47,8 @@ struct SimOptions {
   std::string unit_library;  ///< Verilated unit; empty: unit_library_path()
   int depth = 3;
   int units = 1;
+  std::string shaders;   ///< the shader set that draws, as ShaderSource::load takes it; empty: the built-in kernels
+  int samples = 1;       ///< with `shaders`: frames whose contributions add up, 1 .. kMostSamples
   uint32_t threads = 0;  ///< of engines native, estimate and sampled; 0: as many as the machine has cores
   /// Of engine sampled: "2%" of the cycles, half of their interval, or "10s" for the whole command; one or none.
   std::string error, time;
@@ -51,6 +64,7 @@ struct SimOptions {
   std::vector<std::string> command;  ///< the command line, for the report
   /// Puts something around the device, which works on that memory; empty: nothing. No option of the command line.
   std::function<std::unique_ptr<ComputeUnit>(std::unique_ptr<ComputeUnit>, const Memory&)> wrap = {};
+  ShaderSource shader_source = {};
   const EstimatingEngines* estimating = nullptr;  ///< engines sampled and estimate; null: there are none
 };
 int sim_command(const SimOptions& options);

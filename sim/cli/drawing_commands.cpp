@@ -20,6 +20,7 @@ void DrawingCommands::add_sim_command() {
                           ->group(command_group::kSimulate);
   add_scene(*sim_app, sim_.scene, sim_.size, sim_.view, sim_.look, sim_.detail);
   add_depth(*sim_app, sim_.depth);
+  add_shader_options(*sim_app);
   add_config(*sim_app, sim_.config, sim_.set);
   add_units(*sim_app, sim_.units);
   add_traverser(*sim_app, sim_.traverser);
@@ -27,6 +28,20 @@ void DrawingCommands::add_sim_command() {
   add_sampling_options(*sim_app);
   add_output_options(*sim_app);
   sim_app->callback([this] { code_ = sim_command(sim_); });
+}
+
+void DrawingCommands::add_shader_options(CLI::App& sim_app) {
+  sim_app
+      .add_option("--shaders", sim_.shaders,
+                  "a folder with GLSL shaders (.rgen, .rchit, .rmiss) that draw in place of the built-in kernels")
+      ->type_name("FOLDER")
+      ->group(option_group::kScene);
+  sim_app
+      .add_option("--samples", sim_.samples,
+                  "with --shaders: frames that add up to the picture, each told its number; the shaders weigh them")
+      ->group(option_group::kScene)
+      ->check(CLI::Range(1, kMostSamples))
+      ->capture_default_str();
 }
 
 void DrawingCommands::add_engine_options(CLI::App& sim_app) {

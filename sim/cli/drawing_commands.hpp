@@ -21,6 +21,7 @@ class DrawingCommands {
 
  private:
   void add_sim_command();
+  void add_shader_options(CLI::App& sim_app);
   void add_engine_options(CLI::App& sim_app);
   void add_sampling_options(CLI::App& sim_app);
   void add_output_options(CLI::App& sim_app);

@@ -19,6 +19,10 @@ std::array<uint32_t, kArguments> arguments_of(const RunRecord& record, const Sce
                           record.configuration.significand);
 }
 
+const RayProgram& ray_program(const RunRecord& record) {
+  return record.kernels ? *record.kernels : built_in_ray_program(KernelTarget(record.configuration));
+}
+
 void check_depth_and_units(int depth, int units) {
   if (depth < 1 || depth > kLargestDepth)
     throw InputError(fmt::format("depth is {}; it must be from 1 to {}", depth, kLargestDepth));
@@ -28,7 +32,7 @@ void check_depth_and_units(int depth, int units) {
 
 void check_fits(const RunRecord& record, const Scene& scene) {
   const ChipConfiguration& chip = record.configuration.chip;
-  if (record.reflections && !chip.reflections) {
+  if (record.reflections && !chip.reflections && !record.kernels) {
     throw InputError(fmt::format(
         "{}: material '{}' reflects, and depth {} casts reflections, but {} has no kernel for them (chip.reflections): "
         "draw with --depth 1, or fit a configuration to this scene with raypool fit",
@@ -43,14 +47,14 @@ void check_fits(const RunRecord& record, const Scene& scene) {
           scene.name, found, record.configuration.name));
     }
   }
-  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
+  const Program& program = ray_program(record).program;
   for (const RayKernel kernel : kernels_of(chip, record.depth, record.reflections))
     check_instructions(program, std::string(kRayKernelNames[kernel]), record.configuration);
 }
 
 std::string describe(const ChipFault& fault, const RunRecord& record) {
   if (fault.fault.code != FaultCode::SubnormalNumber) return fault.what();
-  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
+  const Program& program = ray_program(record).program;
   return fmt::format(
       "a subnormal number arose in kernel {} at '{}', and {} has none (arithmetic.subnormals): draw with --set "
       "arithmetic.subnormals=ieee, or fit a configuration to this frame with raypool fit ({})",
@@ -70,13 +74,13 @@ Surroundings::Surroundings(const Scene& scene, const MemoryImage& image, const R
 }
 
 ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, Surroundings& around) {
-  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
+  const Program& program = ray_program(record).program;
   ChipOptions chip;
   chip.configuration = record.configuration;
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
-  chip.layout = ray_record_layout(record.configuration);
+  chip.layout = record_layout(ray_program(record), record.configuration);
   chip.arguments = arguments_of(record, scene);
   chip.width = record.width;
   chip.height = record.height;
@@ -104,6 +108,7 @@ NativeOptions native_options(const RunRecord& record) {
   native.threads = threads_or_all();
   native.mode = arith::mode_of(record.configuration);
   native.culling = record.configuration.chip.culling;
+  if (record.kernels) native.kernel = record.kernels->native;
   return native;
 }
 

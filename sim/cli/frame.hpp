@@ -16,6 +16,9 @@
 
 namespace raypool {
 
+/// The kernels that draw the frame.
+const RayProgram& ray_program(const RunRecord& record);
+
 /// Throws InputError unless there are 1 .. kLargestDepth, and 1, 2 or 4.
 void check_depth_and_units(int depth, int units);
 

@@ -8,6 +8,7 @@
 
 #include "cli/version.hpp"
 #include "files/json_text.hpp"
+#include "kernel/kernel_report.hpp"
 
 namespace raypool {
 namespace {
@@ -25,6 +26,14 @@ double ratio(uint64_t part, uint64_t whole) {
 double hit_rate(const CacheWork& cache) { return share(cache.hits, cache.misses + cache.joined); }
 
 double rate(uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds : 0; }
+
+/// The set, and what its kernels have become on this machine.
+Json shaders_json(const RunRecord& record) {
+  Json instructions;
+  for (const std::string_view name : kRayKernelNames)
+    instructions[std::string(name)] = extract_kernel(record.kernels->program, std::string(name)).code.size();
+  return {{"folder", record.shaders}, {"samples", record.samples}, {"instructions", instructions}};
+}
 
 /// A figure that only an engine with a notion of time has.
 template <typename Value>
@@ -235,6 +244,16 @@ void line(std::string& text, fmt::format_string<Arguments...> format, Arguments&
   text += '\n';
 }
 
+std::string shaders_text(const RunRecord& record) {
+  std::string text = record.shaders;
+  if (record.samples > 1) text += fmt::format(", {} samples a pixel, of which these are the sums", record.samples);
+  for (const std::string_view name : kRayKernelNames) {
+    text += fmt::format("{} {} {}", name == kRayKernelNames[0] ? "; instructions:" : ",", name,
+                        extract_kernel(record.kernels->program, std::string(name)).code.size());
+  }
+  return text;
+}
+
 void kernel_table(std::string& text, const ChipResult& chip) {
   line(text, "  kernel                  launches    threads  a launch");
   for (size_t i = 0; i < kRayKernels; ++i) {
@@ -248,6 +267,11 @@ void kernel_table(std::string& text, const ChipResult& chip) {
 void ray_table(std::string& text, const RunRecord& record, const RayCounts& rays) {
   line(text, "  rays        {}: {} eye, {} reflection, {} shadow", rays.traced(), rays.eye.traced,
        rays.reflection.traced, rays.shadow.traced);
+  if (record.kernels) {
+    line(text, "    ended     {} eye, {} reflection in nothing; {} shadow at an obstacle", rays.eye.ended,
+         rays.reflection.ended, rays.shadow.ended);
+    return;
+  }
   line(text, "    wasted    {} eye, {} reflection, {} shadow; of these had no weight: {}, {}, {}", rays.eye.futile,
        rays.reflection.futile, rays.shadow.futile, rays.eye.weightless, rays.reflection.weightless,
        rays.shadow.weightless);
@@ -379,6 +403,7 @@ std::string to_json(const RunRecord& record) {
   if (!record.boundary.empty()) json["boundary"] = record.boundary;
   if (!record.hits.empty()) json["hits"] = record.hits;
   if (!record.precision.empty()) json["precision"] = record.precision;
+  if (record.kernels) json["shaders"] = shaders_json(record);
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
   const Vec3d& centre = record.view.centre;
   if (!(centre == Vec3d{})) json["scene"]["centre"] = {centre.x, centre.y, centre.z};
@@ -410,6 +435,7 @@ std::string to_table(const RunRecord& record) {
   line(text, "{}, {} triangles, {}x{}, depth {}: {} on {}, {} compute unit{}", record.scene, record.triangles,
        record.width, record.height, record.depth, record.engine, record.configuration.name, record.units,
        record.units == 1 ? "" : "s");
+  if (record.kernels) line(text, "  shaders     {}", shaders_text(record));
   if (record.chip) {
     ray_table(text, record, record.chip->ray_counts);
     chip_table(text, *record.chip, record.configuration.chip);

@@ -1,6 +1,7 @@
 // What a run leaves in words and numbers: report.json (docs/use/report.md) and the table on the terminal.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "chip/chip.hpp"
 #include "chip/sampling.hpp"
 #include "config/configuration.hpp"
+#include "kernel/ray_program.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "scene/native_renderer.hpp"
@@ -23,6 +25,9 @@ struct RunRecord {
   std::string hits;       ///< own or embree, of engine native; else empty
   std::string precision;  ///< single or double, of engine native; else empty
   Configuration configuration;
+  std::string shaders;                        ///< folder of the shader set; empty: the built-in kernels draw
+  std::shared_ptr<const RayProgram> kernels;  ///< of the shader set; null: the built-in ones
+  int samples = 1;                            ///< frames whose contributions add up to the picture
   std::string scene;
   size_t triangles = 0, materials = 0;
   View view;

@@ -8,6 +8,7 @@
 
 #include "chip/board_modules.hpp"
 #include "chip/chip.hpp"
+#include "chip/several_frames.hpp"
 #include "cli/black_picture.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
@@ -18,6 +19,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
+#include "cli/shaders.hpp"
 #include "config/settings.hpp"
 #include "config/unused_fields.hpp"
 #include "files/unfinished.hpp"
@@ -92,6 +94,7 @@ void check(const SimOptions& options, Engine engine) {
   if (options.hits == "embree" && (!options.traverser.empty() || is_chosen(options, "chip.traverser")))
     throw InputError("--hits embree takes no hits of the machine's traverser: leave --traverser out");
   check_precision(options, engine);
+  check_shaders(options, engine);
   if (options.waves && !has_verilog(engine)) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
@@ -173,8 +176,8 @@ bool names_say_all(const SimOptions& options, const Scene& scene, const Configur
   return own_view && is_built_in(configuration);
 }
 
-fs::path default_folder(const SimOptions& options, const Scene& scene, const Configuration& configuration,
-                        const ImageSize& size) {
+fs::path default_folder(const SimOptions& options, const Scene& scene, const RunRecord& record, const ImageSize& size) {
+  const Configuration& configuration = record.configuration;
   std::string name = fs::path(options.scene).stem().string();
   if (options.detail != 1) name += fmt::format("-detail{:g}", options.detail);
   if (!options.view.empty()) name += "-" + fs::path(options.view).stem().string();
@@ -183,6 +186,8 @@ fs::path default_folder(const SimOptions& options, const Scene& scene, const Con
   if (options.boundary == "chip") name += "-chip";
   if (options.hits == "embree") name += "-embree";
   if (options.precision == "double") name += "-double";
+  if (!record.shaders.empty()) name += "-" + name_of_shaders(record.shaders);
+  if (options.samples > 1) name += fmt::format("-samples{}", options.samples);
   if (!names_say_all(options, scene, configuration)) name += fmt::format("-{:08x}", content_hash(scene, configuration));
   return results_folder() / name;
 }
@@ -194,6 +199,25 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   text += fmt::format("{:.0f} s", seconds);
   if (done.pixels_done > 0.02) text += fmt::format(", about {:.0f} s to go", seconds * (1 / done.pixels_done - 1));
   return text;
+}
+
+/// The frames of the picture, one after the other.
+FrameBuffer draw_samples(RunRecord& record, const Scene& scene, const MemoryImage& image, const Tracer& tracer,
+                         NativeOptions& native) {
+  std::optional<FrameBuffer> picture;
+  for (int sample = 0; sample < record.samples; ++sample) {
+    native.change_arguments = [sample](std::array<uint32_t, kArguments>& arguments) {
+      arguments[argument::kSample] = static_cast<uint32_t>(sample);
+    };
+    NativeStatistics statistics;
+    FrameBuffer frame = render_native(scene, image, tracer, native, &statistics);
+    record.native->add(statistics);
+    if (picture)
+      picture->add(frame);
+    else
+      picture = std::move(frame);
+  }
+  return std::move(*picture);
 }
 
 /// `decisions`, unless null, are told what rays come to.
@@ -219,13 +243,13 @@ FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Sc
   const Progress drawing(true);
   FrameBuffer frame = record.precision == "double"
                           ? render_in_double(scene, image, tracer, native, *record.native, decisions)
-                          : render_native(scene, image, tracer, native, &*record.native);
+                          : draw_samples(record, scene, image, tracer, native);
   record.simulation_seconds = drawing.seconds();
   return frame;
 }
 
 void warn_of_lost_shadows(const RunRecord& record, const Scene& scene, const Tracer& tracer) {
-  if (record.precision == "double") return;
+  if (record.precision == "double" || record.kernels) return;
   const std::string lost = lost_shadows(scene, tracer.traversal(), arguments_of(record, scene));
   if (!lost.empty()) fmt::print(stderr, "raypool: warning: {}\n", lost);
 }
@@ -271,7 +295,7 @@ EngineOptions engine_options(const SimOptions& options, Engine engine, const Run
 std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engine, const RunRecord& record,
                                          MemoryImage& image) {
   std::unique_ptr<ComputeUnit> device = make_unit(engine_options(options, engine, record), image.memory, "unit",
-                                                  kernel_names(ray_kernel_program(KernelTarget(record.configuration))));
+                                                  kernel_names(ray_program(record).program));
   return options.wrap ? options.wrap(std::move(device), image.memory) : std::move(device);
 }
 
@@ -325,25 +349,37 @@ void make_drawing_chip(const SimOptions& options, Engine engine, const RunRecord
   std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   made.device = device.get();
   if (!options.trace.empty()) {
-    made.trace.kernels = kernel_names(ray_kernel_program(KernelTarget(record.configuration)));
+    made.trace.kernels = kernel_names(ray_program(record).program);
     device = std::make_unique<trace::TraceRecorder>(std::move(device), record.configuration,
                                                     trace_window(options, record), made.trace);
   }
   made.chip = make_chip_around(frame, std::move(device));
 }
 
-FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
-                         MemoryImage& image, OutputFolder& out) {
-  Surroundings around(scene, image, record);
-  warn_of_lost_shadows(record, scene, around.tracer);
-  ChipOptions frame = chip_options(record, scene, image, around);
+/// Of several frames, which one.
+std::string sample_text(const RunRecord& record, uint32_t sample) {
+  return record.samples == 1 ? "" : fmt::format("  sample {} of {}:", sample + 1, record.samples);
+}
+
+template <typename Counts>
+void add_counts(std::optional<Counts>& sum, const std::optional<Counts>& counts) {
+  if (sum && counts)
+    *sum += *counts;
+  else if (counts)
+    sum = counts;
+}
+
+/// A frame of the picture, on a chip of its own; the record gets what it comes to.
+void draw_frame(const SimOptions& options, Engine engine, RunRecord& record, MemoryImage& image, ChipOptions frame,
+                OutputFolder& out) {
   frame.limits.cycles = options.cycle_limit.value_or(0);
   DrawingChip drawing;
   make_drawing_chip(options, engine, record, image, frame, drawing);
   if (options.waves) drawing.chip->open_waveform(out.temporary(kWaveform));
   Progress progress(options.quiet || options.json);
+  const std::string sample = sample_text(record, frame.arguments[argument::kSample]);
   frame.progress = [&](const ChipProgress& done) {
-    if (progress.due()) progress.show(progress_text(done, frame.timed, progress.seconds()));
+    if (progress.due()) progress.show(sample + progress_text(done, frame.timed, progress.seconds()));
   };
   // When something goes wrong the waveform up to there is what one wants to see.
   const auto keep_waveform = [&] {
@@ -351,7 +387,7 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
     if (options.waves) keep(out);
   };
   try {
-    record.chip = run_chip(frame, *drawing.chip);
+    add_frame(*record.chip, run_chip(frame, *drawing.chip));
   } catch (const ChipFault& fault) {
     keep_waveform();
     throw InputError(describe(fault, record));
@@ -362,13 +398,25 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
     keep_waveform();
     throw;
   }
-  record.simulation_seconds = record.chip->wall_seconds;
   if (drawing.device != nullptr)
-    record.lockstep = lockstep_counts(*drawing.device);
+    add_counts(record.lockstep, lockstep_counts(*drawing.device));
   else
-    record.chip_lockstep = lockstep_counts(*drawing.chip);
+    add_counts(record.chip_lockstep, lockstep_counts(*drawing.chip));
   drawing.chip.reset();
   if (!options.trace.empty()) write_trace(options, drawing.trace, out);
+}
+
+FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
+                         MemoryImage& image, OutputFolder& out) {
+  Surroundings around(scene, image, record);
+  warn_of_lost_shadows(record, scene, around.tracer);
+  ChipOptions frame = chip_options(record, scene, image, around);
+  record.chip.emplace();
+  for (int sample = 0; sample < record.samples; ++sample) {
+    frame.arguments[argument::kSample] = static_cast<uint32_t>(sample);
+    draw_frame(options, engine, record, image, frame, out);
+  }
+  record.simulation_seconds = record.chip->wall_seconds;
   return std::move(around.frame);
 }
 
@@ -460,7 +508,22 @@ RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& s
   record.height = size.height;
   record.depth = options.depth;
   record.units = options.units;
+  record.samples = options.samples;
   return record;
+}
+
+/// What the machine's memory holds. `shaders`: that draw, or null. Throws InputError when the machine of the record
+/// cannot draw the frame.
+MemoryImage build_image(const SimOptions& options, RunRecord& record, const Scene& scene,
+                        const shader::ShaderSet* shaders) {
+  if (shaders == nullptr) {
+    check_fits(record, scene);
+    return build_memory(ray_program(record).program, scene);
+  }
+  check_shaders(record);
+  MemoryImage image = build_shader_image(options, *shaders, scene, record);
+  check_fits(record, scene);
+  return image;
 }
 
 /// Reports the centre of a scene that is recentred, if words of the machine are shown.
@@ -480,21 +543,24 @@ int sim_command(const SimOptions& options) {
   check(options, engine);
 
   RunRecord record = record_of(options, engine, size);
+  std::shared_ptr<const shader::ShaderSet> shaders;
+  if (!options.shaders.empty()) {
+    shaders = options.shader_source.load(options.shaders);
+    record.shaders = shaders->folder();
+  }
   const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();
   record.view = scene.view();
-  record.reflections = record.depth > 1 && scene.reflects();
+  record.reflections = record.depth > 1 && (shaders || scene.reflects());
   tell_centre(options, scene);
-  check_fits(record, scene);
-  MemoryImage image = build_memory(ray_kernel_program(KernelTarget(record.configuration)), scene);
+  MemoryImage image = build_image(options, record, scene, shaders.get());
   if (options.modules) {
     print_modules(options, engine, record, scene, image);
     return 0;
   }
-  OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size)
-                                       : fs::path(options.out));
+  OutputFolder out(options.out.empty() ? default_folder(options, scene, record, size) : fs::path(options.out));
 
   clear_unfinished(out);
   // A run that is stopped leaves its waveform until then.
@@ -502,6 +568,8 @@ int sim_command(const SimOptions& options) {
   if (options.waves) keep_running.emplace();
 
   const FrameBuffer frame = draw(options, engine, record, scene, image, out, whole);
+  if (shaders && record.chip) record.chip->ray_counts = record.chip->ray_counts.without_weights();
+  if (shaders && record.native) record.native->ray_counts = record.native->ray_counts.without_weights();
 
   const std::vector<uint8_t> png = encode_png(frame);
   out.write("image.png", std::string(png.begin(), png.end()));
@@ -510,7 +578,7 @@ int sim_command(const SimOptions& options) {
   out.write("report.json", report);
   out.publish();
   const std::string black = why_black(frame, record.chip ? record.chip->ray_counts : record.native->ray_counts, scene,
-                                      eye_of(options, scene));
+                                      eye_of(options, scene), shaders != nullptr);
   if (!black.empty()) std::fprintf(stderr, "raypool: warning: %s\n", black.c_str());
   if (options.json) {
     fmt::print("{}", report);

@@ -163,6 +163,16 @@ class LockstepChipImpl : public LockstepChip {
 
 }  // namespace
 
+ChipLockstepCounts& ChipLockstepCounts::operator+=(const ChipLockstepCounts& other) {
+  for (uint64_t ChipLockstepCounts::*count :
+       {&ChipLockstepCounts::cycles, &ChipLockstepCounts::kernels, &ChipLockstepCounts::rays,
+        &ChipLockstepCounts::intersections, &ChipLockstepCounts::contributions, &ChipLockstepCounts::memory_reads,
+        &ChipLockstepCounts::memory_writes, &ChipLockstepCounts::counters, &ChipLockstepCounts::differences}) {
+    this->*count += other.*count;
+  }
+  return *this;
+}
+
 std::string to_string(const ChipLockstepCounts& counts) {
   return fmt::format(
       "chip lockstep: {} cycles, {} kernels, {} rays, {} intersections, {} contributions, {} memory reads, {} memory "

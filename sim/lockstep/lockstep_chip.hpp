@@ -25,6 +25,8 @@ struct ChipLockstepCounts {
   uint64_t memory_writes = 0;  ///< quadwords, likewise
   uint64_t counters = 0;       ///< times that all counters were compared
   uint64_t differences = 0;    ///< 0, or 1: the first one ends the run
+
+  ChipLockstepCounts& operator+=(const ChipLockstepCounts& other);
 };
 
 /// "chip lockstep: 1234 cycles, ... compared, 0 differences"

@@ -134,6 +134,13 @@ void NativeStatistics::count_left_out(const NativeOptions& options) {
                             dropped_rays);
 }
 
+void store_program(const Program& program, Memory& memory) {
+  for (uint32_t i = 0; i < program.code.size(); ++i) {
+    memory.store(8 * i, static_cast<uint32_t>(program.code[i]));
+    memory.store(8 * i + 4, static_cast<uint32_t>(program.code[i] >> 32));
+  }
+}
+
 MemoryImage build_memory(const Program& program, const Scene& scene) {
   auto round_up = [](uint64_t bytes) { return (bytes + 63) / 64 * 64; };
   const uint64_t base = round_up(8 * program.code.size());
@@ -141,10 +148,7 @@ MemoryImage build_memory(const Program& program, const Scene& scene) {
   if (size > UINT32_MAX)
     throw InputError(fmt::format("{}: {} materials do not fit in the memory", scene.name, scene.materials.size()));
   MemoryImage image{Memory(static_cast<uint32_t>(size)), static_cast<uint32_t>(base)};
-  for (uint32_t i = 0; i < program.code.size(); ++i) {
-    image.memory.store(8 * i, static_cast<uint32_t>(program.code[i]));
-    image.memory.store(8 * i + 4, static_cast<uint32_t>(program.code[i] >> 32));
-  }
+  store_program(program, image.memory);
   for (uint32_t i = 0; i < scene.materials.size(); ++i) {
     const uint32_t record = image.material_base + i * kMaterialBytes;
     for (uint32_t axis = 0; axis < 3; ++axis) {

@@ -24,6 +24,8 @@ struct MemoryImage {
 };
 /// Throws InputError when it would not fit in 32-bit addresses.
 MemoryImage build_memory(const Program& program, const Scene& scene);
+/// From address 0 on, where there is room for it.
+void store_program(const Program& program, Memory& memory);
 
 /// A secondary ray's origin leaves its surface by this share of the sum of its hit's largest coordinate and t: four
 /// times the most by which a rounding of the kernels is off, and four times that of t, which has 24 bits in every

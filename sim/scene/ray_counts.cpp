@@ -47,4 +47,13 @@ void RayCounts::count_left_out(uint64_t hits, bool reflections, uint64_t too_dee
   reflection.left_out = reflections ? hits - too_deep - reflection.traced : 0;
 }
 
+RayCounts RayCounts::without_weights() const {
+  RayCounts counts = *this;
+  for (Kind* kind : {&counts.eye, &counts.reflection, &counts.shadow}) {
+    kind->weightless = kind->left_out = 0;
+    kind->futile = kind->ended;
+  }
+  return counts;
+}
+
 }  // namespace raypool

@@ -25,6 +25,9 @@ struct RayCounts {
   /// each, and, if `reflections`, a reflection; so many of these were too deep.
   void count_left_out(uint64_t hits, bool reflections, uint64_t too_deep);
 
+  /// For kernels of others, which cast what they like and have no weights in rays: what these figures say is zero.
+  RayCounts without_weights() const;
+
   uint64_t traced() const { return eye.traced + reflection.traced + shadow.traced; }
   uint64_t missed() const { return eye.ended + reflection.ended; }
   uint64_t blocked() const { return shadow.ended; }

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // What a report has of the run itself; all other numbers are its results.
-constexpr std::array kSetUp = {"raypool", "engine", "boundary", "hits",  "precision",   "scene",
+constexpr std::array kSetUp = {"raypool", "engine", "boundary", "hits",  "precision",   "shaders",      "scene",
                                "view",    "size",   "depth",    "units", "reflections", "configuration"};
 // Neither: the same things in other words, and what this computer did.
 constexpr std::array kLeftOut = {

@@ -1,0 +1,110 @@
+#include "cli/shaders.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "cli/folders.hpp"
+#include "files/input_file.hpp"
+#include "isa/input_error.hpp"
+#include "kernel/ray_program.hpp"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Memory is laid out before the kernels are compiled, as they hold addresses: the longest program has room.
+constexpr size_t kProgramRoom = 65536;
+
+std::vector<fs::path> files_in(const std::string& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (at->is_regular_file(error)) files.push_back(at->path());
+  if (error) throw InputError(fmt::format("cannot read folder '{}': {}", folder, error.message()));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+void check_shaders(const SimOptions& options, Engine engine) {
+  if (options.shaders.empty()) {
+    if (options.samples != 1)
+      throw InputError(
+          "--samples is for shader sets: the built-in kernels draw every sample alike; leave it out, or "
+          "give --shaders too");
+    return;
+  }
+  if (!options.shader_source.load || !options.shader_source.memory)
+    throw InputError("this program draws with the built-in kernels alone: leave --shaders out");
+  if (engine == Engine::Estimate || engine == Engine::Sampled) {
+    throw InputError(
+        fmt::format("engine {} knows the built-in kernels alone: draw shaders with native, functional, model, rtl or "
+                    "lockstep",
+                    options.engine));
+  }
+  if (options.precision == "double")
+    throw InputError("--precision double draws with the built-in kernels alone: leave it or --shaders out");
+  if (options.unstable != 0)
+    throw InputError("--unstable moves what the built-in kernels know of the camera: leave it or --shaders out");
+  if (options.samples > 1 && (options.waves || !options.trace.empty()))
+    throw InputError("a waveform or trace is of one frame: leave --samples out, or --waves and --trace");
+}
+
+void check_shaders(const RunRecord& record) {
+  const ChipConfiguration& chip = record.configuration.chip;
+  if (chip.culling) {
+    throw InputError(
+        "chip.culling drops rays whose first payload words are zero, which are no weights in shaders: draw with --set "
+        "chip.culling=false");
+  }
+  if (chip.shading == Shading::Traverser) {
+    throw InputError(
+        "chip.shading is traverser, which adds to the picture without a miss shader: draw with --set "
+        "chip.shading=kernel");
+  }
+  if (record.reflections && !chip.reflections) {
+    throw InputError(fmt::format(
+        "depth {} traces rays from closest-hit shaders, but {} has no kernel for them (chip.reflections): draw with "
+        "--depth 1 or --set chip.reflections=true",
+        record.depth, record.configuration.name));
+  }
+}
+
+MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSet& set, const Scene& scene,
+                               RunRecord& record) {
+  Program room;
+  room.code.assign(kProgramRoom, 0);
+  MemoryImage image = build_memory(room, scene);
+  ShaderFrame frame;
+  frame.width = static_cast<uint32_t>(record.width);
+  frame.height = static_cast<uint32_t>(record.height);
+  frame.samples = static_cast<uint32_t>(record.samples);
+  frame.camera = camera_numbers(scene, frame.width, frame.height);
+  frame.offset = static_cast<float>(
+      offset_share(longest_direction(frame.camera, frame.width, frame.height), record.configuration.significand));
+  const shader::Resources resources = options.shader_source.memory(image, scene, set, frame);
+  const KernelTarget target(record.configuration);
+  record.kernels = std::make_shared<const RayProgram>(make_ray_program(set.record(resources, target), target));
+  store_program(record.kernels->program, image.memory);
+  return image;
+}
+
+std::string name_of_shaders(const std::string& folder) {
+  uint32_t hash = hash_of("");
+  for (const fs::path& file : files_in(folder)) {
+    hash = hash_of(fs::relative(file, folder).string(), hash);
+    hash = hash_of(read_file(file, "shader file"), hash);
+  }
+  fs::path path = fs::path(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  return fmt::format("{}-{:08x}", path.filename().string(), hash);
+}
+
+}  // namespace raypool
