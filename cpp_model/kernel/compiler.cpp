@@ -7,6 +7,7 @@
 
 #include "bits.hpp"
 #include "isa/input_error.hpp"
+#include "kernel/schedule.hpp"
 #include "kernel/triples.hpp"
 
 namespace raypool::kernel {
@@ -81,9 +82,11 @@ void compile(Function function, Program& program, const KernelTarget& target) {
   fold_constants(function);
   fold_addresses(function);
   remove_dead(function);
+  if (function.reuses_values) remove_short_jumps(function);
   join_conditions(function);
   sink_leaves(function);
   remove_dead(function);
+  if (function.reuses_values) schedule(function);
   if (target.triples) function = with_triples(function);
   const Allocation places = allocate(function);
 

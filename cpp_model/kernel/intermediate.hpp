@@ -66,6 +66,7 @@ struct Function {
   int labels = 0;
   /// First registers of groups of three that get places in a row.
   std::vector<int> groups;
+  bool reuses_values = false;
 };
 
 /// What an op reads and writes. Predicate p0 is left out.

@@ -36,6 +36,7 @@ class Lowering {
   kernel::Function run();
 
  private:
+  kernel::Function finished();
   using RecordedInt = kernel::RecordedKernel::Int;
   using RecordedFloat = kernel::RecordedKernel::Float;
   using RecordedBool = kernel::RecordedKernel::Bool;

@@ -413,8 +413,6 @@ void Lowering::loop(const Block& header, uint32_t stop) {
   ++loops_;
   const size_t opened = open_.size();
   open_.push_back(merge);
-  const auto outer_back = reach_.find(header.label);
-  const std::optional<int> saved = outer_back == reach_.end() ? std::nullopt : std::optional(outer_back->second);
   const int next = recorder_.declare_predicate();
   reach_[header.label] = next;
   if (shared) {
@@ -441,7 +439,6 @@ void Lowering::loop(const Block& header, uint32_t stop) {
   }
   open_.resize(opened);
   reach_.erase(header.label);
-  if (saved) reach_[header.label] = *saved;
   --loops_;
   recorder_.end_loop(next, false);
   way_.known.clear();

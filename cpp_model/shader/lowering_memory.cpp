@@ -422,9 +422,8 @@ void Lowering::sample(const Line& line) {
   const Value place = get(line.operands.at(1));
   const RecordedInt record = as_int(image->second.first);
   const RecordedFloat u = as_float(place.at(0)), v = as_float(place.at(1));
-  Value value;
-  for (const RecordedFloat& channel : texture::sample(k_, record, u, v)) value.push_back(of(channel));
-  set(line, value);
+  const auto texel = shader::sample(k_, record, u, v);
+  set(line, {of(texel.x), of(texel.y), of(texel.z), of(texel.w)});
 }
 
 void Lowering::fetch(const Line& line) {
@@ -432,9 +431,8 @@ void Lowering::fetch(const Line& line) {
   if (image == images_.end() || image->second.second) fail("only a texel of a sampler2D can be fetched");
   const Value place = get(line.operands.at(1));
   const RecordedInt record = as_int(image->second.first), x = as_int(place.at(0)), y = as_int(place.at(1));
-  Value value;
-  for (const RecordedFloat& channel : texture::fetch(k_, record, x, y)) value.push_back(of(channel));
-  set(line, value);
+  const auto texel = fetch_texel(k_, record, x, y);
+  set(line, {of(texel.x), of(texel.y), of(texel.z), of(texel.w)});
 }
 
 void Lowering::query_size(const Line& line) {

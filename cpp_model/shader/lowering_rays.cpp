@@ -71,7 +71,7 @@ kernel::Function Lowering::run() {
     flags_ = of(k_.int_word(word::kFlags));
     begin_variables();
     region(entry, kEnd);
-    return recorder_.finish();
+    return finished();
   }
   // Thread and block both become x | y << 16: their sum is the pixel.
   const Scalar thread = of(k_.thread());
@@ -87,7 +87,13 @@ kernel::Function Lowering::run() {
     begin_variables();
     region(entry, kEnd);
   });
-  return recorder_.finish();
+  return finished();
+}
+
+kernel::Function Lowering::finished() {
+  kernel::Function function = recorder_.finish();
+  function.reuses_values = true;
+  return function;
 }
 
 Value Lowering::built_in(uint32_t number, uint32_t type) {
@@ -286,8 +292,8 @@ void Lowering::put_payload(uint32_t id, bool shadow) {
   const uint32_t type = module_.type(known->second.type).element;
   Value value = variable(id);
   for (size_t i = 0; i < value.size(); ++i) {
-    const auto known = way_.known.find({id, i});
-    if (known != way_.known.end()) value[i] = known->second;
+    const auto held = way_.known.find({id, i});
+    if (held != way_.known.end()) value[i] = held->second;
   }
   const auto words = payload_words(type);
   Scalar tag = Scalar::constant(0);

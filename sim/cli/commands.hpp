@@ -64,7 +64,7 @@ struct SimOptions {
   std::vector<std::string> command;  ///< the command line, for the report
   /// Puts something around the device, which works on that memory; empty: nothing. No option of the command line.
   std::function<std::unique_ptr<ComputeUnit>(std::unique_ptr<ComputeUnit>, const Memory&)> wrap = {};
-  ShaderSource shader_source = {};
+  ShaderSource shader_source = {shader::ShaderSet::load, build_shader_memory};
   const EstimatingEngines* estimating = nullptr;  ///< engines sampled and estimate; null: there are none
 };
 int sim_command(const SimOptions& options);
