@@ -23,9 +23,9 @@ constexpr uint32_t kIndices = kArguments;  // thread, block, threads, blocks
 constexpr uint32_t kWords = kIndices + 4;
 constexpr uint32_t kOwn = kWords + kIntersectionWords;
 
-// What is done in one step, with values d, a, b, c of Code. Steps behind kFirstPredicate set predicate d, all others
-// value d.
-//   row: name, expression of a, b (values), sa, sb (the same, signed), mode
+// What is done in one step, with d, a, b, c of its Code.
+//   ROW(name, expression): value d becomes the expression, in values a and b (as signed numbers sa and sb) and the
+//   mode; predicate d becomes it under mask c; in the logic steps a and b are predicates
 #define RAYPOOL_VALUE_STEPS(ROW)                  \
   ROW(Mov, a)                                     \
   ROW(Iadd, a + b)                                \
@@ -70,24 +70,26 @@ constexpr uint32_t kOwn = kWords + kIntersectionWords;
   ROW(Fgt, arith::greater(a, b, mode))    \
   ROW(Fge, arith::greater_equal(a, b, mode))
 
+#define RAYPOOL_LOGIC_STEPS(ROW) \
+  ROW(Pand, a& b)                \
+  ROW(Por, a | b)                \
+  ROW(Pxor, a ^ b)               \
+  ROW(Pandn, a & ~b)
+
 enum class Step : uint32_t {
 #define RAYPOOL_ROW(name, expression) name,
-  RAYPOOL_VALUE_STEPS(RAYPOOL_ROW) RAYPOOL_COMPARE_STEPS(RAYPOOL_ROW)
+  RAYPOOL_VALUE_STEPS(RAYPOOL_ROW) RAYPOOL_COMPARE_STEPS(RAYPOOL_ROW) RAYPOOL_LOGIC_STEPS(RAYPOOL_ROW)
 #undef RAYPOOL_ROW
       Ffma,  // d = a * b + c
   Sel,       // d = predicate c ? a : b
   Load,      // d = memory at a + immediate b
   Store,     // memory at a + immediate b = c
-  Pand,      // d = predicates a, b under mask c; likewise the next three
-  Por,
-  Pxor,
-  Pandn,
   Import,
   Export,      // under mask c
   Contribute,  // under mask c
   Unless,      // goes to step d unless mask c is on
   If,          // goes to step d if mask c is on
-  Again,       // goes back to step d, the end of loop a, which has b operations
+  Again,       // goes back to step d, the begin of loop a, which has b steps
   Exit,
 };
 
@@ -98,12 +100,9 @@ Step step_of(Opcode opcode) {
     return Step::name;
     RAYPOOL_VALUE_STEPS(RAYPOOL_ROW)
     RAYPOOL_COMPARE_STEPS(RAYPOOL_ROW)
+    RAYPOOL_LOGIC_STEPS(RAYPOOL_ROW)
     RAYPOOL_ROW(Ffma, )
     RAYPOOL_ROW(Sel, )
-    RAYPOOL_ROW(Pand, )
-    RAYPOOL_ROW(Por, )
-    RAYPOOL_ROW(Pxor, )
-    RAYPOOL_ROW(Pandn, )
     RAYPOOL_ROW(Exit, )
 #undef RAYPOOL_ROW
     case Opcode::Arg:
@@ -334,10 +333,46 @@ struct FunctionRunner::Builder {
   }
 };
 
-/// What a run needs of memory, kept for the next one.
-struct FunctionRunner::Scratch {
-  std::vector<uint32_t> values;
-  std::vector<uint8_t> predicates;
+/// A thread's values and predicates. Their memory is kept for the next thread.
+class FunctionRunner::Scratch {
+ public:
+  void begin(const NativeThread& thread, const std::vector<uint32_t>& initial, uint32_t predicates) {
+    if (values_.size() < kOwn + initial.size()) values_.resize(kOwn + initial.size());
+    predicates_.assign(predicates, 0);
+    value = values_.data();
+    predicate = predicates_.data();
+    predicate[0] = 1;
+    std::copy(thread.arguments->begin(), thread.arguments->end(), value);
+    const std::array<uint32_t, 4> indices = {thread.thread, thread.block, thread.threads, thread.blocks};
+    std::copy(indices.begin(), indices.end(), value + kIndices);
+    forget_words();
+    std::copy(initial.begin(), initial.end(), value + kOwn);
+  }
+  bool on(uint32_t mask) const { return predicate[mask >> 1] != (mask & 1); }
+  void forget_words() { std::fill_n(value + kWords, kIntersectionWords, kUndefinedWord); }
+  void export_ray(NativeThread& thread, uint32_t mask) {
+    if (on(mask)) {
+      Ray ray;
+      std::copy_n(value + kWords, ray.size(), ray.begin());
+      thread.rays.push_back(ray);
+    }
+    forget_words();
+  }
+  void contribute(NativeThread& thread, uint32_t mask) {
+    const uint32_t* const words = value + kWords;
+    if (on(mask)) {
+      thread.frame.push_back(
+          {words[word::kPixel], {words[word::kColor], words[word::kColor + 1], words[word::kColor + 2]}});
+    }
+    forget_words();
+  }
+
+  uint32_t* value = nullptr;
+  uint8_t* predicate = nullptr;
+
+ private:
+  std::vector<uint32_t> values_;
+  std::vector<uint8_t> predicates_;
 };
 
 FunctionRunner::FunctionRunner(const Function& function, uint64_t most_operations)
@@ -352,50 +387,43 @@ void FunctionRunner::fail_endless(const Code& end) const {
                   name_, loops_[end.a], most_operations_));
 }
 
+#define RAYPOOL_VALUE(name, expression)                                                     \
+  case Step::name: {                                                                        \
+    [[maybe_unused]] const uint32_t a = value[code->a], b = value[code->b];                 \
+    [[maybe_unused]] const auto sa = static_cast<int32_t>(a), sb = static_cast<int32_t>(b); \
+    value[code->d] = expression;                                                            \
+    break;                                                                                  \
+  }
+#define RAYPOOL_COMPARE(name, expression)                                                   \
+  case Step::name: {                                                                        \
+    [[maybe_unused]] const uint32_t a = value[code->a], b = value[code->b];                 \
+    [[maybe_unused]] const auto sa = static_cast<int32_t>(a), sb = static_cast<int32_t>(b); \
+    predicate[code->d] = static_cast<uint8_t>(int{expression} & int{on(code->c)});          \
+    break;                                                                                  \
+  }
+#define RAYPOOL_LOGIC(name, expression)                                         \
+  case Step::name: {                                                            \
+    const int a = predicate[code->a], b = predicate[code->b];                   \
+    predicate[code->d] = static_cast<uint8_t>((expression) & int{on(code->c)}); \
+    break;                                                                      \
+  }
+
 template <bool kFlush, bool kNarrow>
 void FunctionRunner::run_in_mode(NativeThread& thread) const {
   const arith::Mode mode = {kFlush ? Subnormals::Flush : Subnormals::Ieee, thread.mode.slow_unit, thread.mode.fused,
                             kNarrow ? thread.mode.significand : arith::kFullSignificand};
-  static thread_local Scratch scratch;
-  if (scratch.values.size() < kOwn + initial_.size()) scratch.values.resize(kOwn + initial_.size());
-  scratch.predicates.assign(predicates_, 0);
-  uint32_t* const value = scratch.values.data();
-  uint8_t* const predicate = scratch.predicates.data();
-  predicate[0] = 1;
-  std::copy(thread.arguments->begin(), thread.arguments->end(), value);
-  value[kIndices] = thread.thread;
-  value[kIndices + 1] = thread.block;
-  value[kIndices + 2] = thread.threads;
-  value[kIndices + 3] = thread.blocks;
-  const auto forget_words = [&] { std::fill_n(value + kWords, kIntersectionWords, kUndefinedWord); };
-  forget_words();
-  std::copy(initial_.begin(), initial_.end(), value + kOwn);
-  const auto on = [&](uint32_t mask) { return predicate[mask >> 1] != (mask & 1); };
-
+  static thread_local Scratch state;
+  state.begin(thread, initial_, predicates_);
+  uint32_t* const value = state.value;
+  uint8_t* const predicate = state.predicate;
+  const auto on = [predicate](uint32_t mask) { return predicate[mask >> 1] != (mask & 1); };
   uint64_t operations = 0;
   const Code* const codes = codes_.data();
   for (const Code* code = codes;; ++code) {
     switch (static_cast<Step>(code->code)) {
-#define RAYPOOL_OPERANDS                                                  \
-  [[maybe_unused]] const uint32_t a = value[code->a], b = value[code->b]; \
-  [[maybe_unused]] const auto sa = static_cast<int32_t>(a), sb = static_cast<int32_t>(b);
-#define RAYPOOL_ROW(name, expression) \
-  case Step::name: {                  \
-    RAYPOOL_OPERANDS                  \
-    value[code->d] = expression;      \
-    break;                            \
-  }
-      RAYPOOL_VALUE_STEPS(RAYPOOL_ROW)
-#undef RAYPOOL_ROW
-#define RAYPOOL_ROW(name, expression)                                                                        \
-  case Step::name: {                                                                                         \
-    RAYPOOL_OPERANDS                                                                                         \
-    predicate[code->d] = static_cast<uint8_t>(static_cast<int>(expression) & static_cast<int>(on(code->c))); \
-    break;                                                                                                   \
-  }
-      RAYPOOL_COMPARE_STEPS(RAYPOOL_ROW)
-#undef RAYPOOL_ROW
-#undef RAYPOOL_OPERANDS
+      RAYPOOL_VALUE_STEPS(RAYPOOL_VALUE)
+      RAYPOOL_COMPARE_STEPS(RAYPOOL_COMPARE)
+      RAYPOOL_LOGIC_STEPS(RAYPOOL_LOGIC)
       case Step::Ffma:
         value[code->d] = arith::fma(value[code->a], value[code->b], value[code->c], mode);
         break;
@@ -408,36 +436,14 @@ void FunctionRunner::run_in_mode(NativeThread& thread) const {
       case Step::Store:
         thread.memory->store(value[code->a] + code->b, value[code->c]);
         break;
-      case Step::Pand:
-        predicate[code->d] = static_cast<uint8_t>(predicate[code->a] & predicate[code->b] & int{on(code->c)});
-        break;
-      case Step::Por:
-        predicate[code->d] = static_cast<uint8_t>((predicate[code->a] | predicate[code->b]) & int{on(code->c)});
-        break;
-      case Step::Pxor:
-        predicate[code->d] = static_cast<uint8_t>((predicate[code->a] ^ predicate[code->b]) & int{on(code->c)});
-        break;
-      case Step::Pandn:
-        predicate[code->d] = static_cast<uint8_t>(predicate[code->a] & ~predicate[code->b] & int{on(code->c)});
-        break;
       case Step::Import:
         std::copy(thread.input.begin(), thread.input.end(), value + kWords);
         break;
       case Step::Export:
-        if (on(code->c)) {
-          Ray ray;
-          std::copy_n(value + kWords, ray.size(), ray.begin());
-          thread.rays.push_back(ray);
-        }
-        forget_words();
+        state.export_ray(thread, code->c);
         break;
       case Step::Contribute:
-        if (on(code->c)) {
-          const uint32_t* const words = value + kWords;
-          thread.frame.push_back(
-              {words[word::kPixel], {words[word::kColor], words[word::kColor + 1], words[word::kColor + 2]}});
-        }
-        forget_words();
+        state.contribute(thread, code->c);
         break;
       case Step::Unless:
         if (!on(code->c)) code = codes + code->d - 1;

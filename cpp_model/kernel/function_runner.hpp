@@ -34,7 +34,7 @@ class FunctionRunner {
     uint32_t d = 0, a = 0, b = 0, c = 0;
   };
   struct Builder;
-  struct Scratch;
+  class Scratch;
 
   template <bool kFlush, bool kNarrow>
   void run_in_mode(NativeThread& thread) const;
