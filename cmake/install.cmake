@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 set(data ${CMAKE_INSTALL_DATADIR}/raypool)
 
 install(TARGETS raypool RUNTIME COMPONENT program)
-install(DIRECTORY configs schemas examples rtl DESTINATION ${data} COMPONENT program)
+install(DIRECTORY configs schemas shaders examples rtl DESTINATION ${data} COMPONENT program)
 install(PROGRAMS scripts/verilate.sh DESTINATION ${data}/scripts COMPONENT program)
 # What a Verilated unit or chip is compiled with.
 foreach(source sim/rtl/rtl_unit.cpp sim/rtl/rtl_chip.cpp sim/rtl/unit_library.hpp sim/rtl/chip_library.hpp

@@ -105,7 +105,8 @@ class ShaderMemory {
     }
     put_members(std::nullopt, set_.push_constants(), "push constants", resources_.push_constants);
     resources_.specialization = file_.specialization();
-    resources_.saved = reserve(uint64_t{4} * kSavedWords * frame_.width * frame_.height, 64);
+    const uint64_t saved = uint64_t{4} * kSavedWords * frame_.width * frame_.height;
+    if (fits(saved, 64)) resources_.saved = reserve(saved, 64);
     resources_.width = frame_.width;
     resources_.height = frame_.height;
     image_.memory.grow(reserve(0, 64));
@@ -121,10 +122,14 @@ class ShaderMemory {
     throw InputError(fmt::format("{}: {}", set_.folder(), message));
   }
 
-  uint32_t reserve(uint64_t bytes, uint64_t alignment) {
+  uint64_t aligned(uint64_t alignment) const { return (end_ + alignment - 1) / alignment * alignment; }
+  bool fits(uint64_t bytes, uint64_t alignment) const {
     constexpr uint64_t kMost = UINT32_MAX - 63;
-    const uint64_t begin = (end_ + alignment - 1) / alignment * alignment;
-    if (begin + bytes > kMost) {
+    return aligned(alignment) + bytes <= kMost;
+  }
+  uint32_t reserve(uint64_t bytes, uint64_t alignment) {
+    const uint64_t begin = aligned(alignment);
+    if (!fits(bytes, alignment)) {
       throw InputError(
           fmt::format("{}: buffers and textures for shaders need more than the 4 GiB that addresses reach; "
                       "use smaller textures or fewer triangles",
@@ -359,7 +364,10 @@ class ShaderMemory {
     const bool srgb = !given || given->flag();
     Words records;
     for (size_t i = 0; i < images.size(); ++i) {
-      const std::string path = (std::filesystem::path(set_.folder()) / images.at(i).text()).string();
+      const std::filesystem::path name = images.at(i).text();
+      if (name.empty() || name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
+        images.at(i).fail("must be a file in the folder of this one, or below it");
+      const std::string path = (std::filesystem::path(set_.folder()) / name).string();
       std::string reason;
       const std::optional<SurfaceImage> image = decode_image(read_file(path, "image"), srgb, reason);
       if (!image) throw InputError(fmt::format("{}: {}; export it again", path, reason));

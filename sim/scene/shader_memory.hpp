@@ -23,7 +23,7 @@ struct ShaderFrame {
 inline constexpr uint32_t kShaderDataBegin = 1u << 20;
 /// Of a 32-byte material record: the address of the RaypoolMaterial, where a shader set draws.
 inline constexpr uint32_t kMaterialSurface = 12;
-/// Words that kernels may save of each path, at Resources::saved.
+/// Words that kernels may save of each path, at Resources::saved; of pictures so large that they do not fit none.
 inline constexpr uint32_t kSavedWords = 16;
 /// The kernel argument with the sample's number.
 inline constexpr uint32_t kSampleArgument = 23;
