@@ -6,8 +6,8 @@
 #include "raypool.glsl"
 #include "sampling.glsl"
 
-// How near is near, as a share of the scene's size.
-layout(constant_id = 0) const float reach = 0.1;
+// How near is near, as a share of twice the scene's diagonal.
+layout(constant_id = 0) const float reach = 0.05;
 
 layout(location = 0) rayPayloadInEXT float weight;
 layout(location = 1) rayPayloadEXT vec3 contribution;

@@ -89,17 +89,19 @@ void main() {
   const bool sky = raypool_frame.background != vec3(0.0);
 
   // What the path finds. A light that a shadow ray could have found as well counts by its share.
-  vec3 found = material.emission * raypool_texture(material.emission_texture, texcoord).rgb;
-  const float density = density_of(path.density);
-  if (density > 0.0 && found != vec3(0.0)) {
-    found *= share(density, raypool_light_likelihood(ray, gl_HitTEXT, hit.normal, material.emission,
-                                                     material.emission_texture));
+  vec3 found = path.weight * material.emission;
+  if (found != vec3(0.0)) {
+    found *= raypool_texture(material.emission_texture, texcoord).rgb;
+    const float density = density_of(path.density);
+    if (density > 0.0) {
+      found *= share(density, raypool_light_likelihood(ray, gl_HitTEXT, hit.normal, material.emission,
+                                                       material.emission_texture));
+    }
   }
-  found *= path.weight;
 
   // The surface.
-  const vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(material.base_color, material.alpha) *
-                     raypool_texture(material.base_color_texture, texcoord);
+  vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(material.base_color, material.alpha);
+  if (material.base_color_texture != 0u) color *= raypool_texture(material.base_color_texture, texcoord);
   vec3 normal = raypool_normal(triangle, hit.barycentrics);
   if (dot(normal, face) < 0.0) normal = -normal;
   if (dot(normal, ray) >= 0.0) normal = face;
@@ -136,9 +138,13 @@ void main() {
       leaves = false;
     }
   } else {
-    const vec4 texel = raypool_texture(material.metallic_roughness_texture, texcoord);
-    const float metallic = material.metallic * texel.b;
-    const float roughness = material.roughness * texel.g;
+    float metallic = material.metallic;
+    float roughness = material.roughness;
+    if (material.metallic_roughness_texture != 0u) {
+      const vec4 texel = raypool_texture(material.metallic_roughness_texture, texcoord);
+      metallic *= texel.b;
+      roughness *= texel.g;
+    }
     const float width = max(roughness * roughness, 0.01);
     const vec3 straight = mix(vec3(0.04), color.rgb, metallic);
     const vec3 reflected = fresnel(straight, viewer);

@@ -8,8 +8,8 @@
 #include "sampling.glsl"
 #include "background.glsl"
 
-// How far shadows reach, as a share of the scene's size: a ceiling far above leaves the floor lit.
-layout(constant_id = 0) const float reach = 0.1;
+// How far shadows reach, as a share of twice the scene's diagonal: a ceiling far above leaves the floor lit.
+layout(constant_id = 0) const float reach = 0.05;
 
 layout(location = 0) rayPayloadInEXT float weight;
 layout(location = 1) rayPayloadEXT vec3 contribution;
@@ -33,9 +33,10 @@ void main() {
   const uint triangle = uint(gl_PrimitiveID);
   const RaypoolMaterial material = raypool_material(hit.material);
   const vec2 texcoord = raypool_texcoord(triangle, hit.barycentrics);
-  const vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(material.base_color, material.alpha) *
-                     raypool_texture(material.base_color_texture, texcoord);
-  const vec3 emission = material.emission * raypool_texture(material.emission_texture, texcoord).rgb;
+  vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(material.base_color, material.alpha);
+  if (material.base_color_texture != 0u) color *= raypool_texture(material.base_color_texture, texcoord);
+  vec3 emission = material.emission;
+  if (emission != vec3(0.0)) emission *= raypool_texture(material.emission_texture, texcoord).rgb;
   const float stopped = weight * coverage(material, color.a);
 
   const vec3 ray = gl_WorldRayDirectionEXT;
