@@ -88,6 +88,8 @@ class Lowering {
   Scalar multiply_add(const Scalar& a, const Scalar& b, const Scalar& c);
   Scalar negate(const Scalar& a) { return immediate(Opcode::Xor, a, 0x80000000u); }
   Scalar select(const Scalar& condition, const Scalar& a, const Scalar& b);
+  /// The same of values of a type: of two constants that are conditions a condition comes.
+  Value select(uint32_t type, const Value& conditions, const Value& a, const Value& b);
   Scalar both(const Scalar& a, const Scalar& b);
   Scalar either(const Scalar& a, const Scalar& b);
   static Scalar inverse(Scalar a);

@@ -298,9 +298,7 @@ void Lowering::region(uint32_t label, uint32_t stop) {
 void Lowering::select_phis(const Block& merge, const Scalar& chosen, uint32_t from_then, uint32_t from_else) {
   for (const Line& phi : merge.phis) {
     const Value a = incoming(phi, from_then), b = incoming(phi, from_else);
-    Value value(a.size());
-    for (size_t i = 0; i < a.size(); ++i) value[i] = select(chosen, a[i], b[i]);
-    values_[phi.id] = value;
+    values_[phi.id] = select(phi.type, {chosen}, a, b);
   }
 }
 

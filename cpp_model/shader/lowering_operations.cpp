@@ -438,9 +438,7 @@ bool Lowering::logic(const Line& line) {
     }
     case spv::Op::OpSelect: {
       const Value chosen = get(line.operands.at(0)), a = get(line.operands.at(1)), b = get(line.operands.at(2));
-      Value value(a.size());
-      for (size_t i = 0; i < a.size(); ++i) value[i] = select(chosen[chosen.size() == 1 ? 0 : i], a[i], b[i]);
-      set(line, value);
+      set(line, select(line.type, chosen, a, b));
       return true;
     }
     default:

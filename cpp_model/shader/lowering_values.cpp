@@ -204,6 +204,19 @@ Scalar Lowering::select(const Scalar& chosen, const Scalar& a, const Scalar& b) 
   return Scalar::in_register(recorder_.emit_select(condition(chosen), first, reg(b), where_));
 }
 
+Value Lowering::select(uint32_t type, const Value& conditions, const Value& a, const Value& b) {
+  Value value(a.size());
+  for (uint32_t i = 0; i < value.size(); ++i) {
+    const Scalar& chosen = conditions[conditions.size() == 1 ? 0 : i];
+    const bool is_known = chosen.is_constant() || !a[i].is_constant() || !b[i].is_constant() || a[i] == b[i];
+    if (is_known || !is_condition(type, i))
+      value[i] = select(chosen, a[i], b[i]);
+    else
+      value[i] = a[i].bits != 0 ? chosen : inverse(chosen);
+  }
+  return value;
+}
+
 Scalar Lowering::copy(const Scalar& a) {
   if (a.kind == Scalar::Kind::Register) return Scalar::in_register(recorder_.emit_copy(a.number, where_));
   if (a.kind == Scalar::Kind::Predicate) return Scalar::in_predicate(recorder_.materialise(condition(a)));

@@ -84,32 +84,33 @@ void main() {
   const bool behind = dot(ray, hit.normal) > 0.0;
   const vec3 face = behind ? -hit.normal : hit.normal;
 
-  const RaypoolMaterial material = raypool_material(hit.material);
+  // Read where it is needed, so that registers need not hold it.
+  RaypoolMaterialAt at = RaypoolMaterialAt(uvec2(raypool_record(hit.material).material, 0u));
   const vec2 texcoord = raypool_texcoord(triangle, hit.barycentrics);
   const bool sky = raypool_frame.background != vec3(0.0);
 
   // What the path finds. A light that a shadow ray could have found as well counts by its share.
-  vec3 found = path.weight * material.emission;
+  vec3 found = path.weight * at.material.emission;
   if (found != vec3(0.0)) {
-    found *= raypool_texture(material.emission_texture, texcoord).rgb;
+    found *= raypool_texture(at.material.emission_texture, texcoord).rgb;
     const float density = density_of(path.density);
     if (density > 0.0) {
-      found *= share(density, raypool_light_likelihood(ray, gl_HitTEXT, hit.normal, material.emission,
-                                                       material.emission_texture));
+      found *= share(density, raypool_light_likelihood(ray, gl_HitTEXT, hit.normal, at.material.emission,
+                                                       at.material.emission_texture));
     }
   }
 
   // The surface.
-  vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(material.base_color, material.alpha);
-  if (material.base_color_texture != 0u) color *= raypool_texture(material.base_color_texture, texcoord);
+  vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(at.material.base_color, at.material.alpha);
+  if (at.material.base_color_texture != 0u) color *= raypool_texture(at.material.base_color_texture, texcoord);
   vec3 normal = raypool_normal(triangle, hit.barycentrics);
   if (dot(normal, face) < 0.0) normal = -normal;
   if (dot(normal, ray) >= 0.0) normal = face;
   const float viewer = clamp(-dot(normal, ray), 1e-4, 1.0);
 
   float coverage = 1.0;
-  if (material.alpha_mode == RAYPOOL_CUT_OUT) coverage = color.a < material.alpha_cutoff ? 0.0 : 1.0;
-  if (material.alpha_mode == RAYPOOL_BLEND) coverage = color.a;
+  if (at.material.alpha_mode == RAYPOOL_CUT_OUT) coverage = color.a < at.material.alpha_cutoff ? 0.0 : 1.0;
+  if (at.material.alpha_mode == RAYPOOL_BLEND) coverage = color.a;
 
   // Where the path goes on, and with what.
   vec3 bounce = ray;
@@ -126,8 +127,8 @@ void main() {
   const float part = raypool_random(seed, RANDOM_PART);
   if (part >= coverage) {
     leaves = false;  // straight on
-  } else if (part < coverage * material.transmission) {
-    const float ratio = behind ? material.ior : 1.0 / material.ior;
+  } else if (part < coverage * at.material.transmission) {
+    const float ratio = behind ? at.material.ior : 1.0 / at.material.ior;
     const float squared = 1.0 - ratio * ratio * (1.0 - viewer * viewer);
     const float inside = sqrt(max(squared, 0.0));
     if (raypool_random(seed, RANDOM_SIDE) < glass_fresnel(viewer, inside, ratio)) {
@@ -138,10 +139,10 @@ void main() {
       leaves = false;
     }
   } else {
-    float metallic = material.metallic;
-    float roughness = material.roughness;
-    if (material.metallic_roughness_texture != 0u) {
-      const vec4 texel = raypool_texture(material.metallic_roughness_texture, texcoord);
+    float metallic = at.material.metallic;
+    float roughness = at.material.roughness;
+    if (at.material.metallic_roughness_texture != 0u) {
+      const vec4 texel = raypool_texture(at.material.metallic_roughness_texture, texcoord);
       metallic *= texel.b;
       roughness *= texel.g;
     }

@@ -16,9 +16,9 @@ layout(location = 1) rayPayloadEXT vec3 contribution;
 hitAttributeEXT RaypoolHit hit;
 
 // The share of light that the surface stops.
-float coverage(RaypoolMaterial material, float alpha) {
-  if (material.alpha_mode == RAYPOOL_CUT_OUT) return alpha < material.alpha_cutoff ? 0.0 : 1.0;
-  return (material.alpha_mode == RAYPOOL_BLEND ? alpha : 1.0) * (1.0 - 0.75 * material.transmission);
+float coverage(RaypoolMaterialAt at, float alpha) {
+  if (at.material.alpha_mode == RAYPOOL_CUT_OUT) return alpha < at.material.alpha_cutoff ? 0.0 : 1.0;
+  return (at.material.alpha_mode == RAYPOOL_BLEND ? alpha : 1.0) * (1.0 - 0.75 * at.material.transmission);
 }
 
 vec3 to_lamp() {
@@ -31,13 +31,14 @@ vec3 to_lamp() {
 void main() {
   const uvec2 pixel = gl_LaunchIDEXT.xy;
   const uint triangle = uint(gl_PrimitiveID);
-  const RaypoolMaterial material = raypool_material(hit.material);
+  // Read where it is needed, so that registers need not hold it.
+  RaypoolMaterialAt at = RaypoolMaterialAt(uvec2(raypool_record(hit.material).material, 0u));
   const vec2 texcoord = raypool_texcoord(triangle, hit.barycentrics);
-  vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(material.base_color, material.alpha);
-  if (material.base_color_texture != 0u) color *= raypool_texture(material.base_color_texture, texcoord);
-  vec3 emission = material.emission;
-  if (emission != vec3(0.0)) emission *= raypool_texture(material.emission_texture, texcoord).rgb;
-  const float stopped = weight * coverage(material, color.a);
+  vec4 color = raypool_color(triangle, hit.barycentrics) * vec4(at.material.base_color, at.material.alpha);
+  if (at.material.base_color_texture != 0u) color *= raypool_texture(at.material.base_color_texture, texcoord);
+  vec3 emission = at.material.emission;
+  if (emission != vec3(0.0)) emission *= raypool_texture(at.material.emission_texture, texcoord).rgb;
+  const float stopped = weight * coverage(at, color.a);
 
   const vec3 ray = gl_WorldRayDirectionEXT;
   const vec3 face = dot(ray, hit.normal) > 0.0 ? -hit.normal : hit.normal;
