@@ -37,12 +37,16 @@ int Lowering::reg(const Scalar& scalar) {
 
 Condition Lowering::condition(const Scalar& scalar) {
   if (scalar.kind == Scalar::Kind::Predicate) return {scalar.number, scalar.negated, where_};
+  // One of an array of constants, chosen by an index.
+  if (scalar.kind == Scalar::Kind::Register)
+    return {compare(Opcode::Ine, scalar, Scalar::constant(0)).number, false, where_};
   return {0, scalar.bits == 0, where_};
 }
 
 int Lowering::predicate(const Scalar& scalar) {
   if (scalar.kind == Scalar::Kind::Predicate && !scalar.negated) return scalar.number;
   if (scalar.kind == Scalar::Kind::Predicate) return recorder_.materialise(condition(scalar));
+  if (scalar.kind == Scalar::Kind::Register) return condition(scalar).predicate;
   return recorder_.emit_predicates(scalar.bits != 0 ? Opcode::Pand : Opcode::Pxor, 0, 0, where_);
 }
 
