@@ -1,4 +1,4 @@
-// expect: hitAttributeEXT
+// expect: hit attributes
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "raypool.glsl"

@@ -1,4 +1,4 @@
-// expect: executeCallableEXT
+// expect: callable
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "raypool.glsl"

@@ -1,4 +1,4 @@
-// expect: traceRayEXT
+// expect: traces a ray
 // expect: miss
 #version 460
 #extension GL_GOOGLE_include_directive : require

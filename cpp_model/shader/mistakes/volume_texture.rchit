@@ -1,4 +1,4 @@
-// expect: 3D
+// expect: sampler2D
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "raypool.glsl"
