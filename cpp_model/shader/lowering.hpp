@@ -19,6 +19,10 @@
 
 namespace raypool::shader {
 
+/// gl_RayFlagsTerminateOnFirstHitEXT and gl_RayFlagsSkipClosestHitShaderEXT: of a ray that asks whether it meets
+/// anything.
+inline constexpr uint32_t kShadowRay = 4 | 8;
+
 /// Which of the ray kernels a shader becomes. Throws InputError with file and line for what cannot be done.
 /// `layout`: of the intersections that it imports.
 kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel,
@@ -99,6 +103,7 @@ class Lowering {
   bool is_condition(uint32_t type, uint32_t scalar) const;
   Scalar narrowed(uint32_t type, const Scalar& value);
   Scalar narrowed_result(const Line& line, const Scalar& value);
+  Scalar upper_product(const Scalar& a, const Scalar& b, bool is_signed);
   static uint32_t log2_of(uint32_t power);
   uint32_t type_of(uint32_t id) const { return module_.type_of(id); }
 

@@ -253,8 +253,10 @@ void Lowering::continue_at(uint32_t merge, uint32_t stop, bool masked) {
 }
 
 void Lowering::go(uint32_t from, uint32_t to, uint32_t stop) {
+  const bool enters = to != stop && !is_open(to);
+  if (enters && module_.block(to).continues != 0) declare_phis(to);
   edge(from, to);
-  if (to != stop && !is_open(to)) region(to, stop);
+  if (enters) region(to, stop);
 }
 
 void Lowering::region(uint32_t label, uint32_t stop) {
@@ -272,7 +274,7 @@ void Lowering::region(uint32_t label, uint32_t stop) {
         if (next != stop && !is_open(next) && module_.block(next).continues != 0) declare_phis(next);
         edge(label, next);
         label = next;
-        break;
+        continue;
       }
       case spv::Op::OpBranchConditional:
         if (block.merge != 0 && block.continues == 0)
@@ -313,7 +315,7 @@ void Lowering::selection(const Block& block, uint32_t stop) {
     if (side.leaves.empty() && merge != stop && !is_open(merge)) {
       uint32_t from = block.label;
       if (taken != merge) {
-        region(taken, merge);
+        go(block.label, taken, merge);
         from = current_;
       }
       if (!side.falls) return;
@@ -337,7 +339,7 @@ void Lowering::selection(const Block& block, uint32_t stop) {
     way_ = before;
     if (by_selection) {
       if (label != merge) {
-        region(label, merge);
+        go(block.label, label, merge);
         from = current_;
       }
     } else {

@@ -62,6 +62,18 @@ void Lowering::operation(const Line& line) {
     case spv::Op::OpControlBarrier:
     case spv::Op::OpMemoryBarrier:
       fail("barriers are not supported: threads share nothing");
+    case spv::Op::OpImageGather:
+    case spv::Op::OpImageDrefGather:
+      fail("textureGather is not supported: fetch the four texels with texelFetch");
+    case spv::Op::OpImageSampleDrefExplicitLod:
+    case spv::Op::OpImageSampleDrefImplicitLod:
+      fail("sampler2DShadow is not supported: sample a sampler2D and compare");
+    case spv::Op::OpImageSampleProjExplicitLod:
+    case spv::Op::OpImageSampleProjImplicitLod:
+      fail("textureProj is not supported: divide by the last coordinate, and use textureLod");
+    case spv::Op::OpRayQueryInitializeKHR:
+    case spv::Op::OpRayQueryProceedKHR:
+      fail("rayQueryEXT is not supported: trace with traceRayEXT, which the traverser does for a thread of its own");
     case spv::Op::OpDPdx:
     case spv::Op::OpDPdy:
     case spv::Op::OpFwidth:
@@ -227,6 +239,17 @@ bool Lowering::arithmetic(const Line& line) {
       set(line, value);
       return true;
     }
+    case spv::Op::OpUMulExtended:
+    case spv::Op::OpSMulExtended: {
+      const Value a = get(line.operands.at(0)), b = get(line.operands.at(1));
+      Value value(2 * a.size());
+      for (size_t i = 0; i < a.size(); ++i) {
+        value[i] = binary(Opcode::Imul, a[i], b[i]);
+        value[a.size() + i] = upper_product(a[i], b[i], line.op == spv::Op::OpSMulExtended);
+      }
+      set(line, value);
+      return true;
+    }
     case spv::Op::OpIAddCarry:
     case spv::Op::OpISubBorrow: {
       const Value a = get(line.operands.at(0)), b = get(line.operands.at(1));
@@ -243,6 +266,23 @@ bool Lowering::arithmetic(const Line& line) {
     default:
       return false;
   }
+}
+
+/// Bits 63:32 of a product, from those of its 16-bit halves.
+Scalar Lowering::upper_product(const Scalar& a, const Scalar& b, bool is_signed) {
+  const auto low = [&](const Scalar& x) { return immediate(Opcode::And, x, 0xffff); };
+  const auto high = [&](const Scalar& x) { return immediate(Opcode::Shr, x, 16); };
+  const Scalar cross = binary(Opcode::Imul, high(a), low(b));
+  const Scalar carried = binary(Opcode::Iadd, cross, high(binary(Opcode::Imul, low(a), low(b))));
+  const Scalar other = binary(Opcode::Iadd, binary(Opcode::Imul, low(a), high(b)), low(carried));
+  Scalar upper = binary(Opcode::Iadd, binary(Opcode::Imul, high(a), high(b)), high(carried));
+  upper = binary(Opcode::Iadd, upper, high(other));
+  if (!is_signed) return upper;
+  // A negative factor counts 2^32 less.
+  const auto if_negative = [&](const Scalar& x, const Scalar& y) {
+    return binary(Opcode::And, immediate(Opcode::Sar, x, 31), y);
+  };
+  return binary(Opcode::Isub, binary(Opcode::Isub, upper, if_negative(a, b)), if_negative(b, a));
 }
 
 uint32_t Lowering::log2_of(uint32_t power) {

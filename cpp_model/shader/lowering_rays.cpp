@@ -11,7 +11,6 @@ namespace {
 constexpr uint32_t kTagShift = 8, kTagMask = 0xffff;
 constexpr int kPayloadWords = 3;
 
-constexpr uint32_t kTerminateOnFirstHit = 4, kSkipClosestHit = 8;
 constexpr uint32_t kOpaque = 1, kCullNoOpaque = 128;  // all triangles are opaque
 
 std::string stage_name(RayKernel kernel) {
@@ -143,7 +142,7 @@ Value Lowering::built_in(uint32_t number, uint32_t type) {
       return {select(back, Scalar::constant(0xff), Scalar::constant(0xfe))};
     }
     case spv::BuiltIn::IncomingRayFlagsKHR:
-      return {Scalar::constant(kernel_ == RayKernel::Shade ? kTerminateOnFirstHit | kSkipClosestHit : 0)};
+      return {Scalar::constant(kernel_ == RayKernel::Shade ? kShadowRay : 0)};
     case spv::BuiltIn::ObjectToWorldKHR:
     case spv::BuiltIn::WorldToObjectKHR: {
       const uint32_t columns = module_.type(type).count, rows = module_.scalars(type) / columns;
@@ -246,14 +245,13 @@ void Lowering::trace(const Line& line) {
   if (loops_ > 0) fail("traceRayEXT is called in a loop: a thread casts one ray on and one shadow ray, outside of loops");
   const Scalar flags = get_scalar(line.operands.at(1));
   if (!flags.is_constant()) fail("the ray flags are computed: give traceRayEXT constant flags");
-  constexpr uint32_t kShadow = kTerminateOnFirstHit | kSkipClosestHit;
-  if ((flags.bits & ~(kShadow | kOpaque | kCullNoOpaque)) != 0) {
+  if ((flags.bits & ~(kShadowRay | kOpaque | kCullNoOpaque)) != 0) {
     fail(fmt::format("ray flags {:#x}: of them only gl_RayFlagsOpaqueEXT, and gl_RayFlagsTerminateOnFirstHitEXT with "
                      "gl_RayFlagsSkipClosestHitShaderEXT are supported",
                      flags.bits));
   }
-  const bool shadow = (flags.bits & kShadow) == kShadow;
-  if (!shadow && (flags.bits & kShadow) != 0) {
+  const bool shadow = (flags.bits & kShadowRay) == kShadowRay;
+  if (!shadow && (flags.bits & kShadowRay) != 0) {
     fail("gl_RayFlagsTerminateOnFirstHitEXT and gl_RayFlagsSkipClosestHitShaderEXT go together here: a ray looks for the "
          "closest hit, or asks whether it meets anything");
   }

@@ -187,6 +187,8 @@ void Module::read(const std::vector<uint32_t>& words, const std::map<uint32_t, u
       read_type(op, operands);
       continue;
     }
+    if (op == spv::Op::OpTypeRayQueryKHR)
+      fail(where, "rayQueryEXT is not supported: trace with traceRayEXT, which the traverser does for a thread of its own");
     if (op == spv::Op::OpTypeAccelerationStructureKHR) {
       types_[operands.at(0)].kind = TypeKind::AccelerationStructure;
       continue;
@@ -264,6 +266,7 @@ void Module::read_type(spv::Op op, const std::vector<uint32_t>& operands) {
       break;
     case spv::Op::OpTypeImage:
       type.kind = TypeKind::Image;
+      type.element = operands.at(1);
       type.is_2d = operands.at(2) == static_cast<uint32_t>(spv::Dim::Dim2D) && operands.at(4) == 0;
       break;
     case spv::Op::OpTypeSampledImage:

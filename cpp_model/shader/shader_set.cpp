@@ -139,6 +139,11 @@ class Folder : public ShaderSet {
       if (!words_[i].empty()) modules[i].emplace(words_[i], names_[i], resources.specialization);
     EnumArray<RayKernel, kernel::Function, kRayKernels> functions;
     functions[RayKernel::CastEye] = lower(*modules[0], resources, RayKernel::CastEye, target, layout);
+    if (!modules[2] && casts_shadow_rays(*modules[1])) {
+      throw InputError(fmt::format("{}: it traces shadow rays, and no miss shader takes those that meet nothing: add a "
+                                   "file with the ending .rmiss",
+                                   names_[1]));
+    }
     functions[RayKernel::CastSecondary] = lower(*modules[1], resources, RayKernel::CastSecondary, target, layout);
     functions[RayKernel::CastSecondaryDirect] =
         lower(*modules[1], resources, RayKernel::CastSecondaryDirect, target, layout);
@@ -150,6 +155,28 @@ class Folder : public ShaderSet {
   }
 
  private:
+  void check_picture(const Module& module, uint32_t type, const Binding& binding) const {
+    if (!module.type(type).is_2d || module.type(module.type(type).element).kind != TypeKind::Float) {
+      throw InputError(fmt::format("{}: image '{}' is no image2D of floats, and there is but the picture to write: "
+                                   "declare it rgba32f image2D",
+                                   module.name(), binding.name));
+    }
+    for (const Binding& other : bindings_) {
+      if (other.kind != BindingKind::Picture || other.place == binding.place) continue;
+      throw InputError(fmt::format("{}: image '{}' is a second one beside '{}', and there is but one picture to write: "
+                                   "use one",
+                                   module.name(), binding.name, other.name));
+    }
+  }
+
+  static bool casts_shadow_rays(const Module& module) {
+    for (const Block& block : module.blocks())
+      for (const Line& line : block.lines)
+        if (line.op == spv::Op::OpTraceRayKHR && (module.constant(line.operands.at(1)).value_or(0) & kShadowRay) != 0)
+          return true;
+    return false;
+  }
+
   void reflect(const Module& module) {
     for (const auto& [id, variable] : module.variables()) {
       const Decorations& decorations = module.decorations(id);
@@ -177,6 +204,7 @@ class Folder : public ShaderSet {
           binding.kind = kind == TypeKind::AccelerationStructure ? BindingKind::Tree
                          : kind == TypeKind::Image               ? BindingKind::Picture
                                                                  : BindingKind::Textures;
+          if (kind == TypeKind::Image) check_picture(module, type, binding);
           break;
         }
         default:
