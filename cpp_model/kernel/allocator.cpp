@@ -231,7 +231,10 @@ class InterferenceGraph {
 
 [[noreturn]] void fail(const Function& function, const Liveness& liveness, bool predicates, int failed) {
   const char* what = predicates ? "conditions" : "values";
-  const std::string available = predicates ? "a warp has 15 predicates for them" : "a thread has 16 registers";
+  std::string available = predicates ? "a warp has 15 predicates for them" : "a thread has 16 registers";
+  // Conditions that find no predicate become values.
+  available += function.spill_memory ? ", and neither ray words nor spill memory have room for the others"
+                                     : ", and no ray words are free for the others";
   // Where most are held at once; if that is not too many, where the one begins that found no place.
   int most = 0;
   Location where;
@@ -288,11 +291,11 @@ Allocation allocate(const Function& function) {
   return found;
 }
 
-bool has_places(const Function& function) {
+bool has_places(const Function& function, bool predicates) {
   const Liveness liveness = find_liveness(function);
   std::vector<int> places;
   int failed = kNothing;
-  return allocate_kind(function, liveness, false, places, failed);
+  return allocate_kind(function, liveness, predicates, places, failed);
 }
 
 }  // namespace raypool::kernel

@@ -72,21 +72,38 @@ Function with_triples(const Function& function) {
     most = form_triples(formed, most);
     if (most == 0) return function;
     if (has_places(formed)) return formed;
-    --most;
+    // A kernel that was written by hand gets as many as possible.
+    most = function.reuses_values ? most / 2 : most - 1;
   }
+}
+
+/// Throws InputError if registers and predicates do not suffice.
+void make_room(Function& function, CompileCounts& counts) {
+  if (has_places(function, false) && has_places(function, true)) return;
+  Function spilled = function;
+  if (!spill(spilled, counts.spilled)) allocate(function);
+  function = std::move(spilled);
+  if (function.reuses_values) remove_idle_writes(function);
 }
 
 }  // namespace
 
-void compile(Function function, Program& program, const KernelTarget& target) {
+CompileCounts compile(Function function, Program& program, const KernelTarget& target) {
+  CompileCounts counts;
   fold_constants(function);
   fold_addresses(function);
+  if (function.reuses_values) {
+    reuse_values(function);
+    fold_constants(function);
+    remove_idle_writes(function);
+  }
   remove_dead(function);
   if (function.reuses_values) remove_short_jumps(function);
   join_conditions(function);
   sink_leaves(function);
   remove_dead(function);
   if (function.reuses_values) schedule(function);
+  make_room(function, counts);
   if (target.triples) function = with_triples(function);
   const Allocation places = allocate(function);
 
@@ -104,6 +121,7 @@ void compile(Function function, Program& program, const KernelTarget& target) {
     if (does_nothing(op, parts)) continue;
     if (op.label != kNothing) jumps.emplace_back(code.size(), op.label);
     code.push_back(parts);
+    if (op.spill != Spill::None) ++(op.spill == Spill::Store ? counts.stores : counts.loads);
   }
   for (const auto& [index, label] : jumps) code[index].immediate = label_at[label];
 
@@ -115,6 +133,8 @@ void compile(Function function, Program& program, const KernelTarget& target) {
     throw InputError(fmt::format("kernel '{}' is in the program twice; give one of them another name", function.name));
   }
   for (const Instruction& parts : code) program.code.push_back(encode(parts));
+  counts.instructions = static_cast<int>(code.size());
+  return counts;
 }
 
 }  // namespace raypool::kernel

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,13 @@ struct Guard {
 
 inline constexpr int kNothing = -1;
 
+/// Why an op stands where the kernel's source has none.
+enum class Spill : uint8_t {
+  None,
+  Store,   ///< keeps a value outside its register
+  Reload,  ///< gives a register the value back that it has held before: no new value
+};
+
 struct Op {
   /// Undefined: rd is a register in which nothing is held yet.
   enum class Kind : uint8_t { Instruction, Label, LoopEnd, Undefined };
@@ -52,9 +60,21 @@ struct Op {
   uint32_t immediate = 0;
   uint8_t word = 0;      ///< ray word
   int label = kNothing;  ///< Label, LoopEnd: its number; jumps and loop: where they go
-  /// Lanes outside the guard need nothing of rd's old value, so that whatever rd's register held before is dead.
+  /// Lanes outside the guard need nothing of rd's old value, so that whatever rd's register held before is dead. Of a
+  /// Spill::Store: the same of the ray word.
   bool fresh = false;
+  Spill spill = Spill::None;
+  int slot = kNothing;  ///< of spill memory, if the op stores to it or reloads from it
   Location where;
+};
+
+/// Memory of the threads' own, for values that find no place in registers and ray words. Value n of a thread lies at
+/// byte `offset` + base + n stride.
+struct SpillMemory {
+  int offset = kNothing;  ///< virtual register that one op writes, before all else and in every lane: bytes
+  uint32_t base = 0;      ///< byte address, a multiple of 4
+  uint32_t stride = 4;    ///< bytes, a multiple of 4
+  int slots = 0;          ///< how many values it has room for
 };
 
 /// One kernel. Virtual registers are 0 .. registers-1; virtual predicate 0 is p0.
@@ -66,6 +86,11 @@ struct Function {
   int labels = 0;
   /// First registers of groups of three that get places in a row.
   std::vector<int> groups;
+  /// Words of the machine's ray memory a thread, 12 .. 21: those that hold nothing that is needed take spilled values.
+  int slice_words = kPackageWords;
+  std::optional<SpillMemory> spill_memory;
+  /// Equal values are computed once, and ray words not written with what they hold: for code that was not written by
+  /// hand.
   bool reuses_values = false;
 };
 
@@ -89,6 +114,11 @@ bool is_pure(const Op& op);
 bool is_copy(const Op& op);
 /// How many instructions an op is: 3 of a triple.
 inline int elements(const Op& op) { return op.info != nullptr && is_triple(*op.info) ? kElements : 1; }
+/// Threads part or meet there.
+inline bool ends_block(const Op& op) {
+  if (op.kind == Op::Kind::Undefined) return false;
+  return op.kind != Op::Kind::Instruction || op.info->kind == raypool::Kind::Control;
+}
 inline bool is(const Op& op, Opcode opcode) { return op.info != nullptr && op.info->opcode == opcode; }
 
 }  // namespace raypool::kernel

@@ -225,28 +225,28 @@ TEST(KernelLanguage, TooManyValuesAreReportedWithKernelAndLine) {
     for (int i = 0; i < 17; ++i) k.set_word(i % 12, values[i]);
   });
   EXPECT_EQ(error, here(line) +
-                       ": kernel 'k' holds 17 values at once here, but a thread has 16 registers; compute some of them "
-                       "later, or again");
+                       ": kernel 'k' holds 17 values at once here, but a thread has 16 registers, and no ray words are "
+                       "free for the others; compute some of them later, or again");
 }
 
 TEST(KernelLanguage, TooManyConditionsAreReportedWithKernelAndLine) {
   int line = 0;
   const auto body = [&](RecordedKernel& k, int count) {
     std::vector<Bool> conditions;
-    conditions.reserve(32);
+    conditions.reserve(40);
     const Int x = k.int_word(0);
     for (int i = 0; i < count; ++i) {
       conditions.push_back(x == i);
       line = __LINE__ - 1;
     }
+    k.ray_out();
     for (int i = 0; i < count; ++i) k.set_word(1, select(conditions[i], Int(i), k.int_word(1)));
   };
-  EXPECT_EQ(error_of([&](RecordedKernel& k) { body(k, 15); }), "no error");
-  EXPECT_EQ(
-      error_of([&](RecordedKernel& k) { body(k, 16); }),
-      here(line) +
-          ": kernel 'k' holds 16 conditions at once here, but a warp has 15 predicates for them; compute some of them "
-          "later, or again");
+  EXPECT_EQ(error_of([&](RecordedKernel& k) { body(k, 25); }), "no error") << "some become values";
+  EXPECT_EQ(error_of([&](RecordedKernel& k) { body(k, 40); }),
+            here(line) +
+                ": kernel 'k' holds 40 conditions at once here, but a warp has 15 predicates for them, and no ray "
+                "words are free for the others; compute some of them later, or again");
 }
 
 TEST(KernelLanguage, ConditionOfAnIfMayNotBeAssignedInside) {

@@ -1,9 +1,7 @@
 #include "kernel/liveness.hpp"
 
 namespace raypool::kernel {
-namespace {
 
-/// Ops that may follow each op.
 std::vector<std::vector<size_t>> find_successors(const Function& function) {
   const std::vector<Op>& ops = function.ops;
   std::vector<size_t> label_at(function.labels, 0);
@@ -30,9 +28,7 @@ std::vector<std::vector<size_t>> find_successors(const Function& function) {
   return successors;
 }
 
-}  // namespace
-
-Liveness find_liveness(const Function& function) {
+Liveness find_liveness(const Function& function, bool through_reloads) {
   const size_t size = function.ops.size();
   Liveness after;
   after.registers_after.assign(size, NumberSet(function.registers));
@@ -49,7 +45,8 @@ Liveness find_liveness(const Function& function) {
         registers.merge(before_ops.registers_after[next]);
         predicates.merge(before_ops.predicates_after[next]);
       }
-      const Effects effect = effects(function.ops[i]);
+      const bool skipped = through_reloads && function.ops[i].spill == Spill::Reload;
+      const Effects effect = skipped ? Effects() : effects(function.ops[i]);
       NumberSet registers_before = registers;
       NumberSet predicates_before = predicates;
       for (int e = 0; e < effect.registers_defined; ++e) registers_before.erase(effect.register_defined + e);

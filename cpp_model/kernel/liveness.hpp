@@ -15,6 +15,7 @@ class NumberSet {
   explicit NumberSet(int size = 0) : words_((static_cast<size_t>(size) + 63) / 64, 0) {}
   bool has(int number) const { return (words_[index(number)] >> (number & 63) & 1) != 0; }
   void insert(int number) { words_[index(number)] |= uint64_t{1} << (number & 63); }
+  void clear() { words_.assign(words_.size(), 0); }
   void erase(int number) { words_[index(number)] &= ~(uint64_t{1} << (number & 63)); }
   /// Adds the other set's numbers; true if that changed anything.
   bool merge(const NumberSet& other) {
@@ -48,6 +49,11 @@ struct Liveness {
   std::vector<NumberSet> registers_after;   ///< one set an op
   std::vector<NumberSet> predicates_after;  ///< one set an op
 };
-Liveness find_liveness(const Function& function);
+/// `through_reloads`: of values, wherever they are, in place of registers: a Spill::Reload neither begins nor needs
+/// one.
+Liveness find_liveness(const Function& function, bool through_reloads = false);
+
+/// Ops that may follow each op.
+std::vector<std::vector<size_t>> find_successors(const Function& function);
 
 }  // namespace raypool::kernel

@@ -1,4 +1,6 @@
 // Passes over intermediate code that make it shorter or easier to allocate. None changes what a kernel computes.
+#include "kernel/passes.hpp"
+
 #include <algorithm>
 #include <optional>
 
@@ -6,9 +8,7 @@
 #include "kernel/liveness.hpp"
 
 namespace raypool::kernel {
-namespace {
 
-/// For each virtual register (or predicate) its only defining op, kNothing if there are several or none.
 std::vector<int> find_single_definitions(const Function& function, bool predicates) {
   std::vector<int> definitions(predicates ? function.predicates : function.registers, kNothing);
   std::vector<bool> several(definitions.size(), false);
@@ -26,7 +26,6 @@ std::vector<int> find_single_definitions(const Function& function, bool predicat
   return definitions;
 }
 
-/// The operation that gives the same result with ra and rb exchanged, if there is one.
 std::optional<Opcode> exchanged(Opcode opcode) {
   switch (opcode) {
     case Opcode::Iadd:
@@ -77,10 +76,7 @@ std::optional<Opcode> exchanged(Opcode opcode) {
   }
 }
 
-bool ends_block(const Op& op) {
-  if (op.kind == Op::Kind::Undefined) return false;
-  return op.kind != Op::Kind::Instruction || op.info->kind == Kind::Control;
-}
+namespace {
 
 /// Needs no register: its value can be made anywhere before its use.
 bool is_leaf(const Op& op) {
@@ -205,6 +201,8 @@ void sink_leaves(Function& function) {
   for (size_t i = function.ops.size(); i-- > 0;) {
     const Op leaf = function.ops[i];
     if (!is_leaf(leaf) || definitions[leaf.rd] == kNothing) continue;
+    // It is needed wherever a value is spilled.
+    if (function.spill_memory && leaf.rd == function.spill_memory->offset) continue;
     size_t place = i + 1;
     while (place < function.ops.size() && !blocks_leaf(leaf, function.ops[place])) ++place;
     const auto begin = function.ops.begin();
@@ -223,6 +221,7 @@ void remove_dead(Function& function) {
       const Op& op = function.ops[i];
       const Effects effect = effects(op);
       const bool needed =
+          (function.spill_memory && effect.register_defined == function.spill_memory->offset) ||
           (effect.register_defined != kNothing && liveness.registers_after[i].has(effect.register_defined)) ||
           (effect.predicate_defined != kNothing && liveness.predicates_after[i].has(effect.predicate_defined));
       if (needed || !is_pure(op))

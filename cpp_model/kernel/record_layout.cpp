@@ -84,6 +84,7 @@ RecordLayout compact_layout(const std::vector<Function>& kernels) {
 }
 
 void place_words(Function& kernel, const RecordLayout& layout) {
+  kernel.slice_words = static_cast<int>(layout.words);
   for (Op& op : kernel.ops) {
     if (!(is(op, Opcode::Rld) || is(op, Opcode::Rst)) || op.word < kRayWords) continue;
     const uint8_t place = layout.place.at(op.word);

@@ -159,9 +159,8 @@ class Piece {
         continue;
       }
       // The heaviest is on top of the stack.
-      std::stable_sort(needs.begin(), needs.end(), [&](size_t a, size_t b) {
-        return weight(a) != weight(b) ? weight(a) < weight(b) : a > b;
-      });
+      std::stable_sort(needs.begin(), needs.end(),
+                       [&](size_t a, size_t b) { return weight(a) != weight(b) ? weight(a) < weight(b) : a > b; });
       stack.insert(stack.end(), needs.begin(), needs.end());
     }
   }
@@ -238,8 +237,8 @@ void remove_short_jumps(Function& function) {
     size_t end = i + 1, length = 0;
     while (end < function.ops.size() && !ends_piece(function.ops[end]))
       length += function.ops[end++].kind == Op::Kind::Instruction ? 1 : 0;
-    const bool over = end < function.ops.size() && function.ops[end].kind == Op::Kind::Label &&
-                      function.ops[end].label == jump.label;
+    const bool over =
+        end < function.ops.size() && function.ops[end].kind == Op::Kind::Label && function.ops[end].label == jump.label;
     if (!over || length >= kShortestJump) {
       kept.push_back(jump);
       continue;
@@ -259,9 +258,12 @@ void schedule(Function& function) {
     size_t end = begin;
     while (end < function.ops.size() && !ends_piece(function.ops[end])) ++end;
     if (end > begin) {
+      NumberSet live = liveness.registers_after[end - 1];
+      // What is spilled needs it from its definition on.
+      if (function.spill_memory) live.insert(function.spill_memory->offset);
       Piece piece({function.ops.begin() + static_cast<std::ptrdiff_t>(begin),
                    function.ops.begin() + static_cast<std::ptrdiff_t>(end)},
-                  liveness.registers_after[end - 1]);
+                  live);
       const std::vector<Op> ops = piece.in_order();
       ordered.insert(ordered.end(), ops.begin(), ops.end());
     }

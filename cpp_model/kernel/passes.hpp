@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
+// What several passes over intermediate code share.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "kernel/intermediate.hpp"
+
+namespace raypool::kernel {
+
+/// For each virtual register (or predicate) its only defining op, kNothing if there are several or none.
+std::vector<int> find_single_definitions(const Function& function, bool predicates);
+
+/// The operation that gives the same result with ra and rb exchanged, if there is one.
+std::optional<Opcode> exchanged(Opcode opcode);
+
+}  // namespace raypool::kernel

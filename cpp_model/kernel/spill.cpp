@@ -1,0 +1,516 @@
+#include "kernel/spill.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "kernel/compiler.hpp"
+#include "kernel/liveness.hpp"
+#include "kernel/needed_places.hpp"
+
+namespace raypool::kernel {
+namespace {
+
+constexpr int kMostRounds = 400;
+constexpr int kFewestPlaces = 8;   // when colouring fails although no more values are held than there are places
+constexpr double kMemoryCost = 4;  // of an access, in instructions
+constexpr double kLoopWeight = 8;  // how often a loop's body runs
+constexpr int kDeepestLoop = 6;    // that is weighted
+constexpr uint32_t kNoWords = 0;
+
+size_t at(int number) { return static_cast<size_t>(number); }
+
+/// Where a value lies while it is in no register.
+struct Home {
+  enum class Kind : uint8_t { None, Again, Word, Slot, Register };
+  Kind kind = Kind::None;
+  int number = kNothing;  ///< of the word, slot or register
+};
+
+/// What spilling one value or condition does to the code.
+struct Plan {
+  int number = kNothing;
+  size_t first = 0;             ///< op from which on it is held
+  std::vector<char> held;       ///< [op - first] whether its register still has it behind the op
+  std::vector<size_t> reloads;  ///< ops before which it comes back
+  std::vector<size_t> renamed;  ///< partial writes that go to a register of their own, and from there home
+  double reload_cost = 0, store_cost = 0;
+  int relieved = 0;  ///< places in the code that hold too many, and then one fewer
+  Home home;
+  double cost() const {
+    const double access = home.kind == Home::Kind::Slot ? kMemoryCost : 1;
+    return (reload_cost + store_cost) * access / relieved;
+  }
+};
+
+/// Spills registers, or predicates.
+class Spiller {
+ public:
+  Spiller(Function& function, bool predicates, SpillCounts& counts)
+      : function_(function),
+        predicates_(predicates),
+        counts_(counts),
+        limit_(predicates ? kPredicates - 1 : kRegisters) {}
+
+  bool run() {
+    for (int round = 0; round < kMostRounds; ++round) {
+      prepare();
+      if (std::none_of(pressure_.begin(), pressure_.end(), [&](int held) { return held > limit_; })) {
+        if (has_places(function_, predicates_)) return true;
+        if (--limit_ < kFewestPlaces) return false;
+        continue;
+      }
+      const std::vector<Plan> plans = choose();
+      if (plans.empty()) return false;
+      for (const Plan& plan : plans) insert(plan);
+      rebuild();
+    }
+    return false;
+  }
+
+ private:
+  // What is known of the code, once a round.
+
+  int numbers() const { return predicates_ ? function_.predicates : function_.registers; }
+  const NumberSet& values_after(size_t op) const {
+    return predicates_ ? values_.predicates_after[op] : values_.registers_after[op];
+  }
+  int defined(size_t op) const { return predicates_ ? effects_[op].predicate_defined : effects_[op].register_defined; }
+  /// As an operand, not only because a guard leaves lanes as they are.
+  bool reads(size_t op, int number) const {
+    const Effects& effect = effects_[op];
+    if (predicates_) {
+      return std::find(std::begin(effect.predicate_uses), std::end(effect.predicate_uses), number) !=
+             std::end(effect.predicate_uses);
+    }
+    const auto count = std::count(effect.register_uses.begin(), effect.register_uses.end(), number);
+    return count > (effect.partial && effect.register_defined == number ? 1 : 0);
+  }
+  bool begins(size_t op, int number) const { return defined(op) == number && function_.ops[op].spill != Spill::Reload; }
+
+  /// It follows what defines the number, and finds it in its register.
+  bool is_store_of(size_t op, int number) const {
+    const Op& store = function_.ops[op];
+    return store.spill == Spill::Store && (predicates_ ? store.guard.predicate : store.rb) == number;
+  }
+
+  void prepare() {
+    const std::vector<Op>& ops = function_.ops;
+    const size_t size = ops.size();
+    Liveness live = find_liveness(function_);
+    live_ = std::move(predicates_ ? live.predicates_after : live.registers_after);
+    values_ = find_liveness(function_, true);
+    effects_.clear();
+    for (const Op& op : ops) effects_.push_back(effects(op));
+    predecessors_.assign(size, {});
+    const auto successors = find_successors(function_);
+    for (size_t i = 0; i < size; ++i)
+      for (const size_t next : successors[i]) predecessors_[next].push_back(i);
+    homes_.resize(at(numbers()));
+    counted_.resize(at(numbers()), false);
+    excluded_.assign(at(numbers()), false);
+    if (predicates_) excluded_[0] = true;
+    ranges_.assign(at(numbers()), {size, 0});
+    definitions_.assign(at(numbers()), {});
+    weight_.assign(size, 1);
+    pressure_.assign(size, 0);
+    before_.assign(size, {});
+    behind_.assign(size, {});
+    double weight = 1;
+    int depth = 0;
+    for (size_t i = 0; i < size; ++i) {
+      if (ops[i].kind == Op::Kind::LoopEnd && --depth < kDeepestLoop) weight /= kLoopWeight;
+      weight_[i] = weight;
+      if (is(ops[i], Opcode::Loop)) {
+        if (++depth <= kDeepestLoop) weight *= kLoopWeight;
+        // Its guard is read again at the end of the body, where nothing could be put before it.
+        if (predicates_) excluded_[at(ops[i].guard.predicate)] = true;
+      }
+      note(i);
+    }
+    find_busy_places();
+  }
+  void note(size_t op) {
+    NumberSet held = live_[op];
+    const auto touch = [&](int number) {
+      if (number == kNothing) return;
+      auto& [first, last] = ranges_[at(number)];
+      first = std::min(first, op), last = std::max(last, op);
+    };
+    values_after(op).for_each(touch);
+    if (predicates_)
+      std::for_each(std::begin(effects_[op].predicate_uses), std::end(effects_[op].predicate_uses), touch);
+    else
+      std::for_each(effects_[op].register_uses.begin(), effects_[op].register_uses.end(), touch);
+    const int number = defined(op);
+    if (number != kNothing && !(predicates_ && number == 0)) {
+      touch(number);
+      held.insert(number);
+      // Nothing has to be kept of a register in which nothing is held yet.
+      if (begins(op, number) && function_.ops[op].kind == Op::Kind::Instruction) definitions_[at(number)].push_back(op);
+    }
+    pressure_[op] = held.count();
+  }
+
+  void find_busy_places() {
+    const size_t size = function_.ops.size();
+    busy_.assign(size, kNoWords);
+    written_.assign(size, kNoWords);
+    busy_slots_.clear();
+    if (predicates_) return;
+    const std::vector<NumberSet> needed = find_needed_places(function_);
+    for (size_t i = 0; i < size; ++i) {
+      needed[i].for_each([&](int place) {
+        if (place < kPackageWords) busy_[i] |= 1u << place;
+      });
+    }
+    for (int number = 0; number < numbers(); ++number) reserve(number, homes_[at(number)]);
+  }
+
+  /// Visits the ops behind which the value exists, in a register or elsewhere.
+  template <typename Visit>
+  void for_range(int number, const Visit& visit) const {
+    const auto [first, last] = ranges_[at(number)];
+    for (size_t i = first; i <= last && i < function_.ops.size(); ++i)
+      if (values_after(i).has(number) || begins(i, number)) visit(i);
+  }
+  void reserve(int number, const Home& home) {
+    if (home.kind == Home::Kind::Word) {
+      for_range(number, [&](size_t i) {
+        busy_[i] |= 1u << home.number;
+        written_[i] |= 1u << home.number;
+      });
+    } else if (home.kind == Home::Kind::Slot) {
+      while (busy_slots_.size() <= at(home.number)) busy_slots_.emplace_back(static_cast<int>(function_.ops.size()));
+      for_range(number, [&](size_t i) { busy_slots_[at(home.number)].insert(static_cast<int>(i)); });
+    } else if (home.kind == Home::Kind::Again) {
+      const Op& op = function_.ops[definitions_[at(number)].front()];
+      if (is(op, Opcode::Rld)) for_range(number, [&](size_t i) { busy_[i] |= 1u << op.word; });
+    }
+  }
+
+  // Where a value can lie.
+
+  /// Words that something changes, or that are needed otherwise, while the value exists; all of them across a swap.
+  uint32_t words_taken(int number, bool needed_too) const {
+    uint32_t taken = 0;
+    for_range(number, [&](size_t i) {
+      taken |= needed_too ? busy_[i] : written_[i];
+      if (!begins(i, number)) taken |= words_changed(function_.ops[i]);
+    });
+    return taken;
+  }
+  bool can_be_recomputed(int number) const {
+    if (definitions_[at(number)].size() != 1) return false;
+    const Op& op = function_.ops[definitions_[at(number)].front()];
+    if (predicates_)
+      return op.guard.all() && (is(op, Opcode::Pand) || is(op, Opcode::Pxor)) && op.px == 0 && op.rb == 0;
+    if (op.kind != Op::Kind::Instruction || !op.fresh || op.spill != Spill::None) return false;
+    if (is(op, Opcode::Rld)) return (words_taken(number, false) >> op.word & 1) == 0;
+    return op.info->alu() == AluType::Tid || (is(op, Opcode::Mov) && op.b_is_immediate);
+  }
+  bool is_offset(int number) const {
+    return !predicates_ && function_.spill_memory && number == function_.spill_memory->offset;
+  }
+  Home find_home(int number) const {
+    // What has a home keeps it: partial writes may go there and nowhere else.
+    if (has_home(number)) return homes_[at(number)];
+    if (can_be_recomputed(number)) return {Home::Kind::Again, kNothing};
+    // More and more code reads it.
+    if (is_offset(number)) return {};
+    if (predicates_) return {Home::Kind::Register, kNothing};
+    const int word = find_word(number);
+    if (word != kNothing) return {Home::Kind::Word, word};
+    const int slot = find_slot(number);
+    if (slot != kNothing) return {Home::Kind::Slot, slot};
+    return {};
+  }
+  int find_word(int number) const {
+    const uint32_t free = ~words_taken(number, true) & ((1u << function_.slice_words) - 1);
+    // Best the word that the value ends in, else the one with the least room for others.
+    const auto [first, last] = ranges_[at(number)];
+    for (size_t i = first; i <= last; ++i) {
+      const Op& op = function_.ops[i];
+      if (is(op, Opcode::Rst) && op.spill == Spill::None && !op.b_is_immediate && op.rb == number &&
+          (free >> op.word & 1) != 0)
+        return op.word;
+    }
+    int best = kNothing;
+    std::ptrdiff_t most = -1;
+    for (int word = 0; word < function_.slice_words; ++word) {
+      if ((free >> word & 1) == 0) continue;
+      const auto used =
+          std::count_if(busy_.begin(), busy_.end(), [&](uint32_t busy) { return (busy >> word & 1) != 0; });
+      if (used > most) most = used, best = word;
+    }
+    return best;
+  }
+  int find_slot(int number) const {
+    if (!function_.spill_memory) return kNothing;
+    const std::vector<size_t>& offset = definitions_[at(function_.spill_memory->offset)];
+    if (offset.empty() || ranges_[at(number)].first < offset.front()) return kNothing;
+    for (int slot = 0; slot < function_.spill_memory->slots; ++slot) {
+      if (at(slot) >= busy_slots_.size()) return slot;
+      bool free = true;
+      for_range(number, [&](size_t i) { free = free && !busy_slots_[at(slot)].has(static_cast<int>(i)); });
+      if (free) return slot;
+    }
+    return kNothing;
+  }
+
+  // Which value is spilled.
+
+  bool holds_too_many(size_t op) const { return pressure_[op] > limit_; }
+  /// Nothing is gained between here and the next op of the source if that reads the number.
+  bool read_next(size_t op, int number) const {
+    for (size_t i = op + 1; i < function_.ops.size(); ++i) {
+      if (reads(i, number)) return true;
+      if (function_.ops[i].spill == Spill::None) return false;
+    }
+    return false;
+  }
+
+  /// The register keeps the value until the code holds too many; then it comes back before the next op that reads it.
+  Plan plan_for(int number) const {
+    Plan plan;
+    plan.number = number;
+    const auto [first, last] = ranges_[at(number)];
+    plan.first = first;
+    plan.held.assign(last - first + 1, 1);
+    const auto held_before = [&](size_t op) {
+      const std::vector<size_t>& predecessors = predecessors_[op];
+      return !predecessors.empty() && std::all_of(predecessors.begin(), predecessors.end(), [&](size_t before) {
+        return before >= first && before <= last && plan.held[before - first] != 0;
+      });
+    };
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (size_t i = first; i <= last; ++i) {
+        bool held = held_before(i) || (reads(i, number) && !is_store_of(i, number));
+        if (defined(i) == number && !effects_[i].partial) held = true;
+        if (held && holds_too_many(i) && live_[i].has(number) && !read_next(i, number)) held = false;
+        changed |= (plan.held[i - first] != 0) != held;
+        plan.held[i - first] = held ? 1 : 0;
+      }
+    }
+    for (size_t i = first; i <= last; ++i) {
+      const bool held = held_before(i);
+      if (reads(i, number) && !held && !is_store_of(i, number)) {
+        plan.reloads.push_back(i);
+        plan.reload_cost += weight_[i];
+      }
+      const bool defines = defined(i) == number;
+      if (defines && effects_[i].partial && !held && !reads(i, number)) plan.renamed.push_back(i);
+      if (live_[i].has(number) && plan.held[i - first] == 0 && !defines && holds_too_many(i)) ++plan.relieved;
+    }
+    return plan;
+  }
+
+  std::vector<Plan> choose() {
+    std::vector<Plan> plans;
+    std::vector<bool> done = excluded_;
+    for (;;) {
+      NumberSet candidates(numbers());
+      for (size_t i = 0; i < pressure_.size(); ++i)
+        if (holds_too_many(i)) candidates.merge(live_[i]);
+      Plan best;
+      candidates.for_each([&](int number) {
+        if (done[at(number)]) return;
+        Plan plan = plan_for(number);
+        if (plan.relieved == 0) return;
+        plan.home = find_home(number);
+        if (plan.home.kind == Home::Kind::None) return;
+        const bool stored = plan.home.kind == Home::Kind::Again || has_home(number);
+        for (const size_t op : definitions_[at(number)])
+          plan.store_cost += stored ? 0 : weight_[op] * (predicates_ ? 2 : 1);
+        if (best.number == kNothing || plan.cost() < best.cost()) best = std::move(plan);
+      });
+      if (best.number == kNothing) return plans;
+      done[at(best.number)] = true;
+      reserve(best.number, best.home);
+      for (size_t i = best.first; i - best.first < best.held.size(); ++i) {
+        if (best.held[i - best.first] != 0 || !live_[i].has(best.number)) continue;
+        live_[i].erase(best.number);
+        if (defined(i) != best.number) --pressure_[i];
+      }
+      plans.push_back(std::move(best));
+    }
+  }
+  bool has_home(int number) const {
+    const Home::Kind kind = homes_[at(number)].kind;
+    return kind != Home::Kind::None && kind != Home::Kind::Again;
+  }
+
+  // The code that keeps it elsewhere.
+
+  void insert(const Plan& plan) {
+    const int number = plan.number;
+    Home home = plan.home;
+    if (home.kind == Home::Kind::Register && home.number == kNothing) home.number = function_.registers++;
+    count(number, home);
+    const bool stored = home.kind == Home::Kind::Again || has_home(number);
+    for (const size_t i : definitions_[at(number)]) {
+      Op& op = function_.ops[i];
+      if (std::find(plan.renamed.begin(), plan.renamed.end(), i) == plan.renamed.end()) {
+        if (!stored) store(op, number, home, behind_[i]);
+        continue;
+      }
+      const int own = function_.registers++;
+      // A store of the round before follows it.
+      if (stored) {
+        for (size_t next = i + 1; function_.ops[next].spill != Spill::None; ++next)
+          if (function_.ops[next].spill == Spill::Store && function_.ops[next].rb == number)
+            function_.ops[next].rb = own;
+      } else {
+        store(op, own, home, behind_[i]);
+      }
+      op.rd = own;
+      op.fresh = true;
+    }
+    for (const size_t i : plan.reloads) before_[i].push_back(reload(number, home, i));
+    homes_[at(number)] = home;
+  }
+  void count(int number, const Home& home) {
+    if (counted_[at(number)]) return;
+    counted_[at(number)] = true;
+    if (predicates_)
+      ++counts_.predicates;
+    else if (home.kind == Home::Kind::Again)
+      ++counts_.recomputed;
+    else
+      ++(home.kind == Home::Kind::Word ? counts_.to_words : counts_.to_memory);
+  }
+
+  static Op new_op(Opcode opcode, const Location& where) {
+    Op op;
+    op.info = &instruction(opcode);
+    op.where = where;
+    return op;
+  }
+  Op with_home(Op op, const Home& home) const {
+    if (home.kind == Home::Kind::Slot) {
+      const SpillMemory& memory = *function_.spill_memory;
+      op.ra = memory.offset;
+      op.immediate = memory.base + static_cast<uint32_t>(home.number) * memory.stride;
+      op.slot = home.number;
+    } else {
+      op.word = static_cast<uint8_t>(home.number);
+    }
+    return op;
+  }
+
+  void store(const Op& definition, int source, const Home& home, std::vector<Op>& code) const {
+    if (home.kind == Home::Kind::Register) {
+      // 1 where the condition holds, else 0.
+      for (const bool value : {false, true}) {
+        Op op = new_op(Opcode::Mov, definition.where);
+        if (value) op.guard = {source, false};
+        op.rd = home.number;
+        op.b_is_immediate = true;
+        op.immediate = value ? 1 : 0;
+        op.fresh = !value;
+        op.spill = Spill::Store;
+        code.push_back(op);
+      }
+      return;
+    }
+    Op op = with_home(new_op(home.kind == Home::Kind::Word ? Opcode::Rst : Opcode::St, definition.where), home);
+    op.guard = definition.guard;
+    op.rb = source;
+    op.fresh = definition.fresh || definition.guard.all();
+    op.spill = Spill::Store;
+    code.push_back(op);
+  }
+
+  /// In all lanes: more lanes than the reading op's may have the value, and it is the same that their register had.
+  Op reload(int number, const Home& home, size_t place) const {
+    const Location& where = function_.ops[place].where;
+    Op op;
+    if (home.kind == Home::Kind::Again) {
+      op = function_.ops[definitions_[at(number)].front()];
+      op.guard = {};
+    } else if (home.kind == Home::Kind::Register) {
+      op = new_op(Opcode::Igt, where);
+      op.ra = home.number;
+      op.b_is_immediate = true;
+    } else {
+      op = with_home(new_op(home.kind == Home::Kind::Word ? Opcode::Rld : Opcode::Ld, where), home);
+    }
+    op.rd = number;
+    op.fresh = true;
+    op.spill = Spill::Reload;
+    op.where = where;
+    return op;
+  }
+
+  void rebuild() {
+    std::vector<Op> ops;
+    for (size_t i = 0; i < function_.ops.size(); ++i) {
+      ops.insert(ops.end(), before_[i].begin(), before_[i].end());
+      ops.push_back(function_.ops[i]);
+      ops.insert(ops.end(), behind_[i].begin(), behind_[i].end());
+    }
+    function_.ops = std::move(ops);
+    // What has been recomputed keeps its first definition, as long as others may follow.
+    const Liveness live = find_liveness(function_);
+    std::vector<Op> kept;
+    for (size_t i = 0; i < function_.ops.size(); ++i) {
+      const Op& op = function_.ops[i];
+      const NumberSet& needed = predicates_ ? live.predicates_after[i] : live.registers_after[i];
+      if (op.spill != Spill::Reload || needed.has(op.rd)) kept.push_back(op);
+    }
+    function_.ops = std::move(kept);
+  }
+
+  Function& function_;
+  bool predicates_;
+  SpillCounts& counts_;
+  int limit_;
+  std::vector<NumberSet> live_;  // in registers, behind each op
+  Liveness values_;              // wherever they are
+  std::vector<Effects> effects_;
+  std::vector<std::vector<size_t>> predecessors_;
+  std::vector<Home> homes_;    // [number]
+  std::vector<bool> counted_;  // [number]
+  std::vector<bool> excluded_;
+  std::vector<std::pair<size_t, size_t>> ranges_;  // [number] first and last op
+  std::vector<std::vector<size_t>> definitions_;   // [number] without reloads
+  std::vector<double> weight_;                     // [op]
+  std::vector<int> pressure_;                      // [op] how many are held
+  std::vector<uint32_t> busy_;                     // [op] words, a bit each
+  std::vector<uint32_t> written_;                  // [op] words that other values lie in
+  std::vector<NumberSet> busy_slots_;              // [slot] ops
+  std::vector<std::vector<Op>> before_, behind_;   // [op] what is put there
+};
+
+/// Stores of values that never come back from there.
+void remove_unneeded_stores(Function& function) {
+  for (bool changed = true; changed;) {
+    const std::vector<NumberSet> needed = find_needed_places(function);
+    std::vector<Op> kept;
+    for (size_t i = 0; i < function.ops.size(); ++i) {
+      const Op& op = function.ops[i];
+      const int place = op.slot == kNothing ? op.word : kPackageWords + op.slot;
+      if (op.spill != Spill::Store || needed[i].has(place)) kept.push_back(op);
+    }
+    changed = kept.size() != function.ops.size();
+    function.ops = std::move(kept);
+    remove_dead(function);
+  }
+}
+
+}  // namespace
+
+bool spill(Function& function, SpillCounts& counts) {
+  if (!Spiller(function, true, counts).run()) return false;
+  remove_dead(function);
+  // What has become of conditions are values like others.
+  for (Op& op : function.ops) op.spill = Spill::None;
+  if (!Spiller(function, false, counts).run()) return false;
+  function.spill_memory.reset();
+  remove_dead(function);
+  remove_unneeded_stores(function);
+  return has_places(function, false) && has_places(function, true);
+}
+
+}  // namespace raypool::kernel
