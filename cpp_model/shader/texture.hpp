@@ -63,7 +63,7 @@ Neighbours<K> neighbours(K& k, const typename K::Float& coordinate, const typena
   using Int = typename K::Int;
   using Bool = typename K::Bool;
   const Float place = multiply_add(wrapped(k, coordinate, wrap), to_float(size), 0.5f);
-  Int second = to_int(place);  // 0 .. size
+  Int second = min(to_int(place), size);  // a short significand may have rounded it up
   Float weight = place - to_float(second);
   Int first = second - 1;
   // Beyond the edge is the texel at the other end with Repeat, else the one at this end.
