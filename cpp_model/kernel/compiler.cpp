@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <climits>
 
 #include "bits.hpp"
@@ -89,6 +90,19 @@ void make_room(Function& function, CompileCounts& counts) {
 }  // namespace
 
 CompileCounts compile(Function function, Program& program, const KernelTarget& target) {
+  if (function.spill_memory) {
+    // Its address takes instructions, and a register: only for what finds no place without.
+    Function without = function;
+    without.spill_memory.reset();
+    Program extended = program;
+    try {
+      const CompileCounts counts = compile(std::move(without), extended, target);
+      program = std::move(extended);
+      return counts;
+    } catch (const InputError&) {
+      // With memory it may do, or there is a better reason.
+    }
+  }
   CompileCounts counts;
   fold_constants(function);
   fold_addresses(function);
@@ -121,6 +135,7 @@ CompileCounts compile(Function function, Program& program, const KernelTarget& t
     if (does_nothing(op, parts)) continue;
     if (op.label != kNothing) jumps.emplace_back(code.size(), op.label);
     code.push_back(parts);
+    counts.slots = std::max(counts.slots, op.slot + 1);
     if (op.spill != Spill::None) ++(op.spill == Spill::Store ? counts.stores : counts.loads);
   }
   for (const auto& [index, label] : jumps) code[index].immediate = label_at[label];

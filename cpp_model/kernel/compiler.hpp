@@ -37,6 +37,7 @@ bool has_places(const Function& function, bool predicates = false);
 struct CompileCounts {
   int instructions = 0;
   SpillCounts spilled;
+  int slots = 0;              ///< of spill memory
   int stores = 0, loads = 0;  ///< instructions that spill values, and that get them back or compute them again
 };
 

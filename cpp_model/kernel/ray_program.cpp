@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -24,7 +25,10 @@ void compile_all(RayProgram& made, const KernelTarget& target) {
     kernel::Function function = made.functions[i];
     function.name = name_of(i);
     kernel::place_words(function, made.layout);
-    kernel::compile(std::move(function), made.program, target);
+    // Of a compact record ray memory has but these words.
+    if (target.compact) function.slice_words = static_cast<int>(made.layout.words);
+    made.counts[i] = kernel::compile(std::move(function), made.program, target);
+    made.slots = std::max(made.slots, made.counts[i].slots);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "config/configuration.hpp"
 #include "enum_array.hpp"
 #include "isa/program.hpp"
+#include "kernel/compiler.hpp"
 #include "kernel/intermediate.hpp"
 #include "kernel/kernels.hpp"
 #include "kernel/target.hpp"
@@ -24,6 +25,8 @@ struct RayProgram {
   RayFunctions functions;  ///< what the program was compiled from, with words of whole intersections
   /// Runs one thread of a kernel without a machine, with the program's bits; from several threads of C++ at once too.
   std::function<void(RayKernel, NativeThread&)> native;
+  int slots = 0;  ///< of spill memory that the kernels use, where their functions have one
+  EnumArray<RayKernel, kernel::CompileCounts, kRayKernels> counts{};
 };
 
 /// The program of these kernels, which are recorded with whole intersections; natively they run from their intermediate

@@ -41,6 +41,7 @@ class Lowering {
 
  private:
   kernel::Function finished();
+  void place_saved(const Scalar& depth, const Scalar& inside);
   using RecordedInt = kernel::RecordedKernel::Int;
   using RecordedFloat = kernel::RecordedKernel::Float;
   using RecordedBool = kernel::RecordedKernel::Bool;
@@ -189,6 +190,7 @@ class Lowering {
   uint32_t current_ = 0;                            // block whose lines are recorded, or were last
   int loops_ = 0;
   std::set<uint32_t> written_;                      // variables
+  std::optional<int> saved_;                        // register: where the thread's own memory lies, bytes
   std::optional<Scalar> pixel_, flags_;             // words of the ray that has come
   bool tag_came_ = false;                           // with it
   /// What holds of the lanes of the mask at one place.

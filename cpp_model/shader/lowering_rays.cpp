@@ -10,6 +10,7 @@ namespace {
 
 constexpr uint32_t kTagShift = 8, kTagMask = 0xffff;
 constexpr int kPayloadWords = 3;
+constexpr int kSlots = 64;  // a kernel that spills more is better divided
 
 constexpr uint32_t kOpaque = 1, kCullNoOpaque = 128;  // all triangles are opaque
 
@@ -68,6 +69,7 @@ kernel::Function Lowering::run() {
     k_.ray_in();
     pixel_ = of(k_.int_word(word::kPixel));
     flags_ = of(k_.int_word(word::kFlags));
+    if (kernel_ != RayKernel::Shade) place_saved(immediate(Opcode::And, *flags_, kDepthMask), Scalar::constant(1));
     begin_variables();
     region(entry, kEnd);
     return finished();
@@ -82,16 +84,31 @@ kernel::Function Lowering::run() {
                                 Scalar::constant(resources_.width));
   const Scalar in_picture = compare(Opcode::Ult, immediate(Opcode::Shr, *pixel_, 16),
                                     Scalar::constant(resources_.height));
-  under(both(in_row, in_picture), [&] {
+  const Scalar inside = both(in_row, in_picture);
+  place_saved(Scalar::constant(0), inside);
+  under(inside, [&] {
     begin_variables();
     region(entry, kEnd);
   });
   return finished();
 }
 
+/// Where the thread's own memory lies. Miss shaders have none: two rays of a pixel may come to them at once.
+void Lowering::place_saved(const Scalar& depth, const Scalar& inside) {
+  constexpr uint64_t kMost = uint64_t{1} << 30;
+  if (resources_.saved == 0 || resources_.saved_stride() * kSlots > UINT32_MAX - uint64_t{resources_.saved} ||
+      resources_.saved_stride() > kMost) {
+    return;
+  }
+  const Scalar row = binary(Opcode::Iadd, scaled(depth, resources_.height), immediate(Opcode::Shr, *pixel_, 16));
+  const Scalar place = binary(Opcode::Iadd, scaled(row, resources_.width), immediate(Opcode::And, *pixel_, 0xffff));
+  saved_ = reg(select(inside, immediate(Opcode::Shl, place, 2), Scalar::constant(0)));
+}
+
 kernel::Function Lowering::finished() {
   kernel::Function function = recorder_.finish();
   function.reuses_values = true;
+  if (saved_) function.spill_memory = {*saved_, resources_.saved, static_cast<uint32_t>(resources_.saved_stride()), kSlots};
   return function;
 }
 

@@ -48,8 +48,13 @@ struct Resources {
   std::map<Place, Textures> textures;
   std::vector<Word> push_constants;
   std::map<uint32_t, uint32_t> specialization;  ///< constant_id -> bits
-  uint32_t saved = 0;                           ///< address of what kernels save of their paths; 0: no room was made
   uint32_t width = 0, height = 0;               ///< of the picture, pixels
+  uint32_t depth = 1;                           ///< of the deepest rays
+  /// Address of what kernels keep of their threads, behind all else; 0: nothing. Value n of the kernel that a ray of
+  /// depth d has come to (an eye ray's own: 0) lies at saved + saved_stride() n + 4 ((d height + y) width + x): no other
+  /// kernel of the frame uses that place.
+  uint32_t saved = 0;
+  uint64_t saved_stride() const { return uint64_t{4} * width * height * (depth + 1); }
 };
 
 }  // namespace raypool::shader

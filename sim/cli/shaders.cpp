@@ -85,6 +85,7 @@ MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSe
   ShaderFrame frame;
   frame.width = static_cast<uint32_t>(record.width);
   frame.height = static_cast<uint32_t>(record.height);
+  frame.depth = static_cast<uint32_t>(record.depth);
   frame.samples = static_cast<uint32_t>(record.samples);
   frame.camera = camera_numbers(scene, frame.width, frame.height);
   frame.offset = static_cast<float>(
@@ -92,6 +93,15 @@ MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSe
   const shader::Resources resources = options.shader_source.memory(image, scene, set, frame);
   const KernelTarget target(record.configuration);
   record.kernels = std::make_shared<const RayProgram>(make_ray_program(set.record(resources, target), target));
+  constexpr uint64_t kMostSaved = uint64_t{1} << 30;
+  const uint64_t saved = resources.saved_stride() * static_cast<uint64_t>(record.kernels->slots);
+  if (saved > kMostSaved) {
+    throw InputError(fmt::format("shaders {}: {} values that find no register need {} bytes of memory for {}x{} pixels "
+                                 "and depth {}, and may have {}: draw a smaller picture, or less deep",
+                                 set.folder(), record.kernels->slots, saved, record.width, record.height, record.depth,
+                                 kMostSaved));
+  }
+  image.memory.grow(resources.saved + static_cast<uint32_t>((saved + 63) / 64 * 64));
   store_program(record.kernels->program, image.memory);
   return image;
 }

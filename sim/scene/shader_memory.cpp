@@ -105,11 +105,11 @@ class ShaderMemory {
     }
     put_members(std::nullopt, set_.push_constants(), "push constants", resources_.push_constants);
     resources_.specialization = file_.specialization();
-    const uint64_t saved = uint64_t{4} * kSavedWords * frame_.width * frame_.height;
-    if (fits(saved, 64)) resources_.saved = reserve(saved, 64);
     resources_.width = frame_.width;
     resources_.height = frame_.height;
-    image_.memory.grow(reserve(0, 64));
+    resources_.depth = frame_.depth;
+    resources_.saved = reserve(0, 64);
+    image_.memory.grow(resources_.saved);
     return std::move(resources_);
   }
 

@@ -14,6 +14,7 @@ namespace raypool {
 /// What of a frame shaders see.
 struct ShaderFrame {
   uint32_t width = 0, height = 0;  ///< pixels
+  uint32_t depth = 1;              ///< of the deepest rays
   uint32_t samples = 1;            ///< frames that are added up
   float offset = 0;                ///< offset_share()
   CameraNumbers camera{};          ///< camera_numbers() of this width and height
@@ -23,8 +24,6 @@ struct ShaderFrame {
 inline constexpr uint32_t kShaderDataBegin = 1u << 20;
 /// Of a 32-byte material record: the address of the RaypoolMaterial, where a shader set draws.
 inline constexpr uint32_t kMaterialSurface = 12;
-/// Words that kernels may save of each path, at Resources::saved; of pictures so large that they do not fit none.
-inline constexpr uint32_t kSavedWords = 16;
 /// The kernel argument with the sample's number.
 inline constexpr uint32_t kSampleArgument = 23;
 
