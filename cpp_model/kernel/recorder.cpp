@@ -157,13 +157,20 @@ int Recorder::materialise(const Condition& condition) {
 
 int Recorder::declare_register() {
   const int number = new_register();
-  Op op;
-  op.kind = Op::Kind::Undefined;
-  op.rd = number;
-  op.fresh = true;
-  op.where = last_;
-  function_.ops.push_back(op);
+  declare_before(function_.ops.size(), {number});
   return number;
+}
+
+void Recorder::declare_before(size_t place, const std::vector<int>& registers) {
+  std::vector<Op> declarations(registers.size());
+  for (size_t i = 0; i < registers.size(); ++i) {
+    declarations[i].kind = Op::Kind::Undefined;
+    declarations[i].rd = registers[i];
+    declarations[i].fresh = true;
+    declarations[i].where = last_;
+  }
+  function_.ops.insert(function_.ops.begin() + static_cast<std::ptrdiff_t>(place), declarations.begin(),
+                       declarations.end());
 }
 
 int Recorder::declare_predicate() { return emit_predicates(Opcode::Pxor, 0, 0, last_); }

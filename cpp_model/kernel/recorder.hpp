@@ -56,6 +56,11 @@ class Recorder {
 
   /// A register that holds nothing yet.
   int declare_register();
+  /// How many ops, and registers, there are so far.
+  size_t ops() const { return function_.ops.size(); }
+  int registers() const { return function_.registers; }
+  /// Before that op nothing is held in these registers.
+  void declare_before(size_t op, const std::vector<int>& registers);
   /// A predicate that no lane of the current mask has.
   int declare_predicate();
   /// Lanes of the current mask get the predicate, which others keep.

@@ -248,7 +248,9 @@ class Spiller {
   int find_slot(int number) const {
     if (!function_.spill_memory) return kNothing;
     const std::vector<size_t>& offset = definitions_[at(function_.spill_memory->offset)];
-    if (offset.empty() || ranges_[at(number)].first < offset.front()) return kNothing;
+    if (offset.empty()) return kNothing;
+    // What begins before the offset is there is stored behind it.
+    if (ranges_[at(number)].first < offset.front() && definitions_[at(number)].size() != 1) return kNothing;
     for (int slot = 0; slot < function_.spill_memory->slots; ++slot) {
       if (at(slot) >= busy_slots_.size()) return slot;
       bool free = true;
@@ -352,7 +354,9 @@ class Spiller {
     for (const size_t i : definitions_[at(number)]) {
       Op& op = function_.ops[i];
       if (std::find(plan.renamed.begin(), plan.renamed.end(), i) == plan.renamed.end()) {
-        if (!stored) store(op, number, home, behind_[i]);
+        size_t place = i;
+        if (home.kind == Home::Kind::Slot) place = std::max(i, definitions_[at(function_.spill_memory->offset)].front());
+        if (!stored) store(op, number, home, behind_[place]);
         continue;
       }
       const int own = function_.registers++;

@@ -334,6 +334,8 @@ void Lowering::selection(const Block& block, uint32_t stop) {
   if (!by_selection && falls && merge_is_inner) declare_phis(merge);
 
   std::optional<Way> after;
+  const size_t begin = recorder_.ops();
+  const int first_register = recorder_.registers();
   uint32_t from_then = block.label, from_else = block.label;
   const auto arm = [&](uint32_t label, const Flow& its, uint32_t& from) {
     way_ = before;
@@ -371,7 +373,16 @@ void Lowering::selection(const Block& block, uint32_t stop) {
   }
   way_ = after.value_or(before);
   if (!falls || !merge_is_inner) return;
-  if (by_selection) select_phis(module_.block(merge), chosen, from_then, from_else);
+  if (by_selection) {
+    // Lanes that jump over an arm do not hold its values before it.
+    std::set<int> of_arms;
+    for (const Line& phi : module_.block(merge).phis)
+      for (const uint32_t from : {from_then, from_else})
+        for (const Scalar& scalar : incoming(phi, from))
+          if (scalar.kind == Scalar::Kind::Register && scalar.number >= first_register) of_arms.insert(scalar.number);
+    recorder_.declare_before(begin, {of_arms.begin(), of_arms.end()});
+    select_phis(module_.block(merge), chosen, from_then, from_else);
+  }
   continue_at(merge, stop, masked);
 }
 

@@ -1,4 +1,5 @@
 // Scalars of a shader as instructions.
+#include "arith/arith.hpp"
 #include "bits.hpp"
 #include "shader/lowering.hpp"
 
@@ -58,7 +59,6 @@ Lowering::RecordedBool Lowering::as_bool(const Scalar& scalar) { return Recorded
 
 Scalar Lowering::binary(Opcode opcode, const Scalar& a, const Scalar& b) {
   if (a.is_constant() && b.is_constant()) {
-    // Integers alone: floats are rounded as the machine does.
     switch (opcode) {
       case Opcode::Iadd:
         return Scalar::constant(a.bits + b.bits);
@@ -78,6 +78,19 @@ Scalar Lowering::binary(Opcode opcode, const Scalar& a, const Scalar& b) {
         return Scalar::constant(a.bits >> (b.bits & 31));
       case Opcode::Sar:
         return Scalar::constant(static_cast<uint32_t>(static_cast<int32_t>(a.bits) >> (b.bits & 31)));
+      // Of floats the compiler knows the nearest, whatever the machine would make of them.
+      case Opcode::Fadd:
+        return Scalar::constant(arith::add(a.bits, b.bits, {}));
+      case Opcode::Fsub:
+        return Scalar::constant(arith::sub(a.bits, b.bits, {}));
+      case Opcode::Fmul:
+        return Scalar::constant(arith::mul(a.bits, b.bits, {}));
+      case Opcode::Fdiv:
+        return Scalar::constant(arith::div(a.bits, b.bits, {}));
+      case Opcode::Fmin:
+        return Scalar::constant(arith::min(a.bits, b.bits, {}));
+      case Opcode::Fmax:
+        return Scalar::constant(arith::max(a.bits, b.bits, {}));
       default:
         break;
     }
@@ -137,6 +150,18 @@ Scalar Lowering::compare(Opcode opcode, const Scalar& a, const Scalar& b) {
         return Scalar::constant(a.bits > b.bits);
       case Opcode::Uge:
         return Scalar::constant(a.bits >= b.bits);
+      case Opcode::Feq:
+        return Scalar::constant(arith::equal(a.bits, b.bits, {}));
+      case Opcode::Fne:
+        return Scalar::constant(arith::not_equal(a.bits, b.bits, {}));
+      case Opcode::Flt:
+        return Scalar::constant(arith::less(a.bits, b.bits, {}));
+      case Opcode::Fle:
+        return Scalar::constant(arith::less_equal(a.bits, b.bits, {}));
+      case Opcode::Fgt:
+        return Scalar::constant(arith::greater(a.bits, b.bits, {}));
+      case Opcode::Fge:
+        return Scalar::constant(arith::greater_equal(a.bits, b.bits, {}));
       default:
         break;
     }
@@ -146,6 +171,22 @@ Scalar Lowering::compare(Opcode opcode, const Scalar& a, const Scalar& b) {
 }
 
 Scalar Lowering::unary(Opcode opcode, const Scalar& a) {
+  if (a.is_constant()) {
+    switch (opcode) {
+      case Opcode::Frcp:
+        return Scalar::constant(arith::rcp(a.bits, {}));
+      case Opcode::Fsqrt:
+        return Scalar::constant(arith::sqrt(a.bits, {}));
+      case Opcode::Frsqrt:
+        return Scalar::constant(arith::rsqrt(a.bits, {}));
+      case Opcode::I2f:
+        return Scalar::constant(arith::from_int(a.bits, {}));
+      case Opcode::F2i:
+        return Scalar::constant(arith::to_int(a.bits, {}));
+      default:
+        break;
+    }
+  }
   return Scalar::in_register(recorder_.emit_unary(opcode, reg(a), where_));
 }
 
@@ -154,6 +195,7 @@ Scalar Lowering::immediate(Opcode opcode, const Scalar& a, uint32_t bits) {
 }
 
 Scalar Lowering::multiply_add(const Scalar& a, const Scalar& b, const Scalar& c) {
+  if (a.is_constant() && b.is_constant()) return binary(Opcode::Fadd, binary(Opcode::Fmul, a, b), c);
   const int first = reg(a), second = reg(b);
   return Scalar::in_register(recorder_.emit_multiply_add(first, second, reg(c), where_));
 }
