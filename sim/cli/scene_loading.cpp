@@ -55,8 +55,9 @@ FileViewChanges parse_view_words(const ViewWords& words) {
   return changes;
 }
 
-Scene load_scene_and_warn(const std::string& scene, double detail, const std::string& view, const ViewWords& words) {
-  Scene loaded = load_scene(scene, {detail, view, parse_view_words(words), words.camera});
+Scene load_scene_and_warn(const std::string& scene, double detail, const std::string& view, const ViewWords& words,
+                          bool surfaces) {
+  Scene loaded = load_scene(scene, {detail, view, parse_view_words(words), words.camera, surfaces});
   for (const std::string& warning : loaded.warnings) fmt::print(stderr, "raypool: warning: {}\n", warning);
   return loaded;
 }

@@ -21,7 +21,8 @@ struct ViewWords {
 /// Throws InputError that names the option.
 FileViewChanges parse_view_words(const ViewWords& words);
 
-/// load_scene() and its warnings.
-Scene load_scene_and_warn(const std::string& scene, double detail, const std::string& view, const ViewWords& words);
+/// load_scene() and its warnings; `surfaces` as SceneOptions have it.
+Scene load_scene_and_warn(const std::string& scene, double detail, const std::string& view, const ViewWords& words,
+                          bool surfaces = false);
 
 }  // namespace raypool

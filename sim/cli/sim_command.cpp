@@ -548,7 +548,7 @@ int sim_command(const SimOptions& options) {
     shaders = options.shader_source.load(options.shaders);
     record.shaders = shaders->folder();
   }
-  const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
+  const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look, !options.shaders.empty());
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();
