@@ -81,6 +81,7 @@ Lowering::Flow Lowering::flow_of_loop(const Block& header) {
     into(operands.at(2));
   }
   if (shared) {
+    open_.pop_back();
     const Flow rest = flow(header.continues, header.label);
     add(body.leaves, rest.leaves);
   }
