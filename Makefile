@@ -226,9 +226,11 @@ tour: setup-sim setup-follow program ## write the pictures and quotes of the tou
 	done
 	@scripts/quoted_output.py --update docs/start/from-*-to-*.md
 
-isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
-	@$(RAYPOOL) isa --write
-	@scripts/core.py $(RAYPOOL)
+# A program of the tables alone: a row that is wrong is reported before all that includes the tables is compiled.
+isa: setup-sim configured-OFF ## write what is derived from the tables of instructions and parameters
+	$(call built,raypool-tables,raypool-tables; the first time this takes about half a minute)
+	@$(BUILD)/raypool-tables --write
+	@scripts/core.py $(BUILD)/raypool-tables
 
 diagrams: setup-sim setup-test program ## draw docs/images/*.svg: the unit, the chip, and the stages of a run in Icarus
 	@PYTHONPATH=scripts python3 -m diagrams $(RAYPOOL) $(BUILD)/diagrams
