@@ -36,8 +36,8 @@ CLI::App* MachineCommands::add(const char* group, const std::string& name, const
 void MachineCommands::add_compare_command() {
   CLI::App* compare_app =
       add(kSimulate, "compare", "compare two reports of sim: what differs in the set-up, and its effect");
-  compare_app->add_option("a", compare_.a, "report.json, or the folder it is in")->required();
-  compare_app->add_option("b", compare_.b, "the same of the other run")->required();
+  compare_app->add_option("a", compare_.a, "report.json of a run, or the folder it is in")->required();
+  compare_app->add_option("b", compare_.b, "report.json of the other run, or the folder it is in")->required();
   compare_app
       ->add_option("--synthesis", compare_.synthesis,
                    "for the area: report of make synth, or a folder of them (default: synth beside the program)")
