@@ -18,6 +18,7 @@ endif
 # here is chosen by the program.
 #: variables of make sim: the frame, and what draws it                      default
 #:   SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply
+#:   SCENES=FOLDER:FOLDER          where SCENE is looked for too               scenes, examples
 export SCENE ?= room
 #:   SIZE=WxH                      pixels, 1..16384 each
 export SIZE ?= 200x200
@@ -114,7 +115,7 @@ FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
 
 .PHONY: help help-all sim compare run cosim configurations faults unit test test-long lint format
 .PHONY: bench clean
-.PHONY: setup-% program configured-%
+.PHONY: setup-% program configured-% checked-frame
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth isa diagrams quoted docs
 .PHONY: package bench-native synth-module follow tour chip-frames
 .PHONY: traverser-trees
@@ -144,8 +145,12 @@ help-all: ## every target and variable
 	@awk 'line && /^export /  { line = sprintf("%-75s ", line) $$4 } line { print line; line = "" } \
 	  /^#: / { line = substr($$0, 4) }' Makefile $(STUDIES)
 
+# What cannot be right is refused before anything is installed or built for it.
+checked-frame:
+	@scripts/check_frame.sh
+
 # An environment may hold a TIME of its own, for time(1).
-sim: setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
+sim: checked-frame setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
 	$(call built,$(DRAWS),what draws; the first time this takes about two minutes)
 	@RAYPOOL=$(BUILD)/$(DRAWS) $(UNIT_OF_ENGINE) $(OF_FRAME)
 	@$(BUILD)/$(DRAWS) sim $(call options,$(FRAME) ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
