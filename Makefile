@@ -290,7 +290,7 @@ numerics-long: setup-sim setup-test ## arithmetic against its oracles, 10^8 pair
 	@scripts/numerics_long.sh $(BUILD)/benches "$${THREADS:-1}"
 
 #: of make quoted:  ARGS="--long --update docs/machine/isa.md": what takes long too; write it into the pages; only these
-quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote
+quoted: setup-sim setup-test setup-synth configured-ON ## run what the pages quote
 	@scripts/build.sh $(BUILD) all raypool_chip_frames
 	@scripts/quoted_output.py $(ARGS)
 
