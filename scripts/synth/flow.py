@@ -185,7 +185,8 @@ def prepare(design):
 def mapper_of(design):
     options = design.options
     # A user with more rounds than usual has the time.
-    return mapping.Mapper(design.library, BUILD, design.clock_ns, options.jobs, options.rounds > CLOSURE_ROUNDS, design.phases)
+    thorough = options.rounds > CLOSURE_ROUNDS
+    return mapping.Mapper(design.library, BUILD, design.clock_ns, options.jobs, thorough, design.phases)
 
 
 def map_design(design):
@@ -313,7 +314,8 @@ def close_timing(design, work, slack):
         if not more:
             break
         names = ", ".join(sorted(design.kinds[i].name for i in more))
-        design.phases.note(f"round {number} of at most {design.options.rounds}: slack {slack:+.3f} ns; for speed: {names}")
+        turn = f"round {number} of at most {design.options.rounds}"
+        design.phases.note(f"{turn}: slack {slack:+.3f} ns; for speed: {names}")
         design.efforts.update({i: design.efforts.get(i, 0) + 1 for i in more})
         map_design(design)
         slack = time_design(design, work)

@@ -79,7 +79,7 @@ def constant(bits):
 
 
 class Remaining:
-    """How long the mapping of kinds of block still takes, by their sizes and the time that those took which are done."""
+    """How long the mapping of kinds of block still takes, by their sizes and the time that those that are done took."""
 
     # Of all sizes: before that the guess is worth nothing.
     LEAST_SHARE = 0.3

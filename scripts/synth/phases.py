@@ -16,8 +16,8 @@ def about(seconds):
 
 
 class Phases:
-    """Prints each phase of `planned` (name -> what it does) as it begins. With a folder it keeps there how long each one
-    took, which the next run of that folder prints. What belongs to no phase is printed without a number.
+    """Prints each phase of `planned` (name -> what it does) as it begins. With a folder it keeps there how long each
+    one took, which the next run in that folder prints. Notes outside of all phases have no number.
     """
 
     # What is shorter needs no estimate.

@@ -12,7 +12,8 @@ from unittest import mock
 
 from small_blocks import ROOT, SmallBlocks, small_design
 
-from synth import elaborate, fit, flow, function, library, macros, mapping, module, netlist, phases, power, report, timing
+from synth import elaborate, fit, flow, function, library, macros, mapping, module, netlist, phases, power, report
+from synth import timing
 from synth.errors import SynthError
 from synth.memories import MemoryModel
 
