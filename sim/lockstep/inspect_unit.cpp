@@ -289,8 +289,8 @@ void UnitInspection::check_pc_stacks() {
   for (uint32_t warp = 0; warp < warps_; ++warp) {
     const char* broken = stacks_[warp].broken();
     if (broken != nullptr)
-      find("rtl/compute/rp_pc_stack.v", fmt::format("PC stack of warp {}, which has {} entries by its rule: {}", warp,
-                                                    stacks_[warp].depth(), broken));
+      find("rtl/compute/rp_pc_stack.v",
+           fmt::format("PC stack of warp {} (depth {} by its rule): {}", warp, stacks_[warp].depth(), broken));
   }
   for (uint32_t rest = yielded_; rest != 0; rest &= rest - 1) {
     const uint32_t warp = lowest(rest);
