@@ -85,18 +85,20 @@ class Remaining:
     LEAST_SHARE = 0.3
     # What is shorter is not worth a word.
     LEAST_SECONDS = 30
+    # Reading the Verilog and the library takes as long for a small kind as the logic of so many bits.
+    FIXED = 10000
 
     def __init__(self, kinds, now=time.monotonic):
-        self.all = max(1, sum(kind.bits for kind in kinds))
+        self.all = sum(kind.bits + self.FIXED for kind in kinds)
         self.done = 0
         self.now = now
         self.begun = now()
 
     def after(self, kind):
         """When `kind` is done too: words that go behind a line, or none where nothing can be said."""
-        self.done += kind.bits
+        self.done += kind.bits + self.FIXED
         share = self.done / self.all
-        left = (self.now() - self.begun) * (1 / share - 1) if share else 0
+        left = (self.now() - self.begun) * (1 / share - 1)
         return f", about {about(left)} left" if share >= self.LEAST_SHARE and left >= self.LEAST_SECONDS else ""
 
 

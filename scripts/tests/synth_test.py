@@ -323,7 +323,8 @@ class Synthesis(SmallBlocks):
         self.assertNotIn("last time", again[2])
 
     def test_mapping_says_how_long_it_still_takes_when_it_knows(self):
-        kinds = [mock.Mock(bits=bits) for bits in (20, 30, 40, 10)]
+        # Of 100 thousand in all, what each costs whatever its size included.
+        kinds = [mock.Mock(bits=bits) for bits in (10000, 20000, 30000, 0)]
         seconds = iter((0, 60, 100, 180, 200))
         left = mapping.Remaining(kinds, lambda: next(seconds))
         self.assertEqual([left.after(kind) for kind in kinds], ["", ", about 2 min left", "", ""])
