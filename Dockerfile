@@ -4,7 +4,7 @@
 #   docker run --rm -it -v "$PWD:/raypool" raypool make sim
 FROM debian:12
 # Groups of scripts/packages.txt.
-ARG groups="sim test synth lint sweep report numerics fidelity follow package quoted coverage docs"
+ARG groups="sim test synth lint sweep report numerics fidelity follow package coverage docs"
 COPY scripts/packages.txt scripts/setup.sh /usr/local/share/raypool/scripts/
 RUN /usr/local/share/raypool/scripts/setup.sh $groups && rm -rf /var/lib/apt/lists/*
 # What is made in the checkout belongs to you.

@@ -18,6 +18,7 @@ endif
 # here is chosen by the program.
 #: variables of make sim: the frame, and what draws it                      default
 #:   SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply
+#:   SCENES=FOLDER:FOLDER          where SCENE is looked for too               scenes, examples
 export SCENE ?= room
 #:   SIZE=WxH                      pixels, 1..16384 each
 export SIZE ?= 200x200
@@ -116,7 +117,7 @@ FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
 
 .PHONY: help help-all sim compare run cosim configurations faults unit test test-long lint format
 .PHONY: bench clean
-.PHONY: setup-% program configured-%
+.PHONY: setup-% program configured-% checked-frame
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth isa diagrams quoted docs
 .PHONY: package bench-native synth-module follow tour chip-frames
 .PHONY: traverser-trees
@@ -146,8 +147,12 @@ help-all: ## every target and variable
 	@awk 'line && /^export /  { line = sprintf("%-75s ", line) $$4 } line { print line; line = "" } \
 	  /^#: / { line = substr($$0, 4) }' Makefile $(STUDIES)
 
+# What cannot be right is refused before anything is installed or built for it.
+checked-frame:
+	@scripts/check_frame.sh
+
 # An environment may hold a TIME of its own, for time(1).
-sim: setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
+sim: checked-frame setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
 	$(call built,$(DRAWS),what draws; the first time this takes about two minutes)
 	@RAYPOOL=$(BUILD)/$(DRAWS) $(UNIT_OF_ENGINE) $(OF_FRAME)
 	@$(BUILD)/$(DRAWS) sim $(call options,$(FRAME) SHADERS SPP ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
@@ -228,9 +233,11 @@ tour: setup-sim setup-follow program ## write the pictures and quotes of the tou
 	done
 	@scripts/quoted_output.py --update docs/start/from-*-to-*.md
 
-isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
-	@$(RAYPOOL) isa --write
-	@scripts/core.py $(RAYPOOL)
+# A program of the tables alone: a row that is wrong is reported before all that includes the tables is compiled.
+isa: setup-sim configured-OFF ## write what is derived from the tables of instructions and parameters
+	$(call built,raypool-tables,raypool-tables; the first time this takes about half a minute)
+	@$(BUILD)/raypool-tables --write
+	@scripts/core.py $(BUILD)/raypool-tables
 
 diagrams: setup-sim setup-test program ## draw docs/images/*.svg: the unit, the chip, and the stages of a run in Icarus
 	@PYTHONPATH=scripts python3 -m diagrams $(RAYPOOL) $(BUILD)/diagrams
@@ -285,7 +292,7 @@ numerics-long: setup-sim setup-test ## arithmetic against its oracles, 10^8 pair
 	@scripts/numerics_long.sh $(BUILD)/benches "$${THREADS:-1}"
 
 #: of make quoted:  ARGS="--long --update docs/machine/isa.md": what takes long too; write it into the pages; only these
-quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote
+quoted: setup-sim setup-test setup-synth configured-ON ## run what the pages quote
 	@scripts/build.sh $(BUILD) all raypool_chip_frames
 	@scripts/quoted_output.py $(ARGS)
 

@@ -24,7 +24,7 @@ if(RAYPOOL_NATIVE)
   set(for "\nCompiled for the processor of the computer it was built on: it may not run on others.")
 endif()
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "ray-tracing GPU to render on, measure, verify and synthesise
-A SIMT compute unit in Verilog, a cycle-exact model of it, and a chip around either that draws pictures.${for}")
+A SIMT compute unit in Verilog, a cycle-accurate model of it, and a chip around either that draws pictures.${for}")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "golden model of raypool as a C++ library
 For find_package(raypool): the targets raypool::model and raypool::lockstep.${for}")
 include(CPack)

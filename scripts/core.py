@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes raypool.core, the FuseSoC description of rtl/, or checks it: scripts/core.py RAYPOOL [--check]
+"""Writes raypool.core, the FuseSoC description of rtl/, or checks it: scripts/core.py RAYPOOL-TABLES [--check]
 
 Files and parameters come from rtl/ and from the program's table; targets stand here. --check writes nothing and ends
 with 1 if the file would change.
@@ -17,11 +17,9 @@ def version():
     return re.search(r"^project\(raypool VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(), re.M).group(1)
 
 
-def parameters(raypool):
+def parameters(tables):
     """Name and default of each, in the order of rtl/compute/rp_multiprocessor.v."""
-    text = subprocess.run(
-        [raypool, "config", "8w8c", "--verilog-parameters"], cwd=ROOT, capture_output=True, text=True, check=True
-    )
+    text = subprocess.run([tables, "--verilog-parameters"], cwd=ROOT, capture_output=True, text=True, check=True)
     return [("UNITS", 1)] + [tuple(line.split("=")) for line in text.stdout.split()]
 
 
@@ -29,7 +27,7 @@ def names(pattern):
     return sorted(str(path.relative_to(ROOT)) for path in (ROOT / "rtl").rglob(pattern))
 
 
-def core(raypool):
+def core(tables):
     yield "CAPI=2:"
     yield "# The hardware for FuseSoC, made from rtl/ by scripts/core.py; a test compares. Do not edit."
     yield f'name: "::raypool:{version()}"'
@@ -47,7 +45,7 @@ def core(raypool):
     yield "    files:"
     for name in names("*.vlt"):
         yield f"      - {name}"
-    known = parameters(raypool)
+    known = parameters(tables)
     listed = ", ".join(name for name, _ in known)
     yield "targets:"
     yield "  default: &default"

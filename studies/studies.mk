@@ -40,7 +40,7 @@ fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configura
 #:   EXPERIMENT=FILE.json
 #:   WHERE=here|slurm                                                          here
 #:   JOBS=N                        points at a time                            all cores; slurm: 100
-#:   SCENES=FOLDER:FOLDER          where scenes are that are not part of the project
+#:   SCENES=FOLDER:FOLDER          where scenes are that are not part of the project, as of make sim
 #:   OUT=FOLDER
 sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/use/sweeps.md)
 	@[ -n "$${EXPERIMENT-}" ] || { echo 'make sweep: name one, EXPERIMENT=configs/experiments/caches.json' >&2; exit 1; }

@@ -14,8 +14,8 @@ add_test(NAME verilate_cosim_machines COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${
 set_tests_properties(verilate_cosim_machines PROPERTIES FIXTURES_SETUP units_of_cosim FIXTURES_REQUIRED unit_2w2c_small
   TIMEOUT 900)
 # Each of the four runs the programs from the seed on: 75, then those behind them, which makes 250 for each.
-add_test(NAME cosim_machines COMMAND raypool cosim --programs 300 --seed 1 --no-shrink --quiet)
-add_test(NAME cosim_machines_more COMMAND raypool cosim --programs 700 --seed 76 --no-shrink --quiet)
+add_test(NAME cosim_machines COMMAND raypool cosim --programs 300 --seed 1 --no-minimise --quiet)
+add_test(NAME cosim_machines_more COMMAND raypool cosim --programs 700 --seed 76 --no-minimise --quiet)
 set_tests_properties(cosim_machines cosim_machines_more PROPERTIES FIXTURES_REQUIRED units_of_cosim TIMEOUT 300)
 raypool_long(50 cosim_machines_more)
 add_test(NAME cosim_command COMMAND ${scripts}/tests/cosim.sh ${raypool_program} ${CMAKE_BINARY_DIR}/cosim-test)

@@ -22,7 +22,7 @@ module rp_bank_arbiter #(
   input  wire [2*LANES-1:0]               want_valid_i,
   input  wire [2*LANES*LINE_BITS-1:0]     want_line_i,
   input  wire [2*LANES*SLOT_BITS-1:0]     want_slot_i,
-  input  wire [2*LANES-1:0]               want_nobody_i,  // no ray waits for it yet
+  input  wire [2*LANES-1:0]               want_prefetch_i, // no ray waits for it yet
   input  wire [LANES-1:0]                 silent_i,
   output wire [2*LANES-1:0]               taken_o,
   // of each bank
@@ -115,8 +115,8 @@ module rp_bank_arbiter #(
       for (b = 0; b < BANKS; b = b + 1) begin : gen_by
         assign first[b] = matches[b*WANTS+2*l];
         assign second[b] = matches[b*WANTS+2*l+1];
-        assign lanes_o[b*LANES+l] = (first[b] && !want_nobody_i[2*l]) ||
-                                    (second[b] && !want_nobody_i[2*l+1] && !first_taken[l]);
+        assign lanes_o[b*LANES+l] = (first[b] && !want_prefetch_i[2*l]) ||
+                                    (second[b] && !want_prefetch_i[2*l+1] && !first_taken[l]);
         assign slots_o[(b*LANES+l)*SLOT_BITS +: SLOT_BITS] =
           want_slot_i[(first[b] ? 2*l : 2*l+1)*SLOT_BITS +: SLOT_BITS];
       end

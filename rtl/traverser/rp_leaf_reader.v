@@ -24,7 +24,7 @@ module rp_leaf_reader #(
   input  wire [2*31-1:0]        start_leaf_i,
   // two lines to look up, of which one can be taken, the first rather; either may be a prefetch
   output wire [1:0]             want_o,
-  output wire [1:0]             want_nobody_o,
+  output wire [1:0]             want_prefetch_o,
   output wire [2*LINE_BITS-1:0] want_line_o,
   output wire [2*SLOT_BITS-1:0] want_slot_o,
   input  wire [1:0]             taken_i,
@@ -119,7 +119,7 @@ module rp_leaf_reader #(
   localparam integer OFFER_BITS = QUEUED_BITS + 1;   // one more bit: a prefetch
   wire [1:0] offered;
   wire [2*OFFER_BITS-1:0] offers;
-  wire offers_ready, was_taken, was_for_nobody;
+  wire offers_ready, was_taken, was_prefetch;
   wire [QUEUED_BITS-1:0] next_data =
     ({QUEUED_BITS{next[0]}} & waiting[0+:QUEUED_BITS]) |
     ({QUEUED_BITS{next[1]}} & waiting[QUEUED_BITS+:QUEUED_BITS]) |
@@ -142,9 +142,9 @@ module rp_leaf_reader #(
     .data_o(offers),
     .taken_i(taken_i),
     .asked_o(was_taken),
-    .asked_data_o({was_for_nobody, asked_slot, asked_line, asked_at, asked_left, asked_place})
+    .asked_data_o({was_prefetch, asked_slot, asked_line, asked_at, asked_left, asked_place})
   );
-  assign asked = was_taken && !was_for_nobody;
+  assign asked = was_taken && !was_prefetch;
   assign popped = (offers_ready && !ahead) ? next : 3'd0;
   wire ahead_taken = offers_ready && ahead;
   always @(posedge clk_i)
@@ -158,10 +158,10 @@ module rp_leaf_reader #(
   generate
     for (g = 0; g < 2; g = g + 1) begin : gen_want
       localparam integer TOP = (g + 1) * OFFER_BITS - 1;
-      assign want_nobody_o[g] = offers[TOP];
+      assign want_prefetch_o[g] = offers[TOP];
       assign {want_slot_o[g*SLOT_BITS+:SLOT_BITS], want_line_o[g*LINE_BITS+:LINE_BITS]} =
         offers[TOP-1-:SLOT_BITS+LINE_BITS];
-      assign want_o[g] = offered[g] && (want_nobody_o[g] || room_o);
+      assign want_o[g] = offered[g] && (want_prefetch_o[g] || room_o);
     end
   endgenerate
 

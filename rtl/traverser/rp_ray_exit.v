@@ -53,7 +53,7 @@ module rp_ray_exit #(
   output wire [SLOT_BITS-1:0]       slot_free_slot_o,
   // the triangle cache, as leaf_reader has it
   output wire [1:0]                 want_o,
-  output wire [1:0]                 want_nobody_o,
+  output wire [1:0]                 want_prefetch_o,
   output wire [51:0]                want_line_o,
   output wire [2*SLOT_BITS-1:0]     want_slot_o,
   input  wire [1:0]                 taken_i,
@@ -183,7 +183,7 @@ module rp_ray_exit #(
     .start_slot_i({{SLOT_BITS{1'b0}}, entry}),
     .start_leaf_i({31'd0, 2'd0, fate_triangle_q}),
     .want_o(want_o),
-    .want_nobody_o(want_nobody_o),
+    .want_prefetch_o(want_prefetch_o),
     .want_line_o(want_line_o),
     .want_slot_o(want_slot_o),
     .taken_i(taken_i),

@@ -178,7 +178,7 @@ module rp_traverser #(
   wire [LANES*SLOT_BITS-1:0] node_given_slot;
   wire [LANES*512-1:0] node_given_data;
   // The triangle cache has one lane more, of those that read the triangle that they have hit.
-  wire [2*LANES+1:0] leaf_want, leaf_nobody, leaf_taken;
+  wire [2*LANES+1:0] leaf_want, leaf_prefetch, leaf_taken;
   wire [2*(LANES+1)*LINE_BITS-1:0] leaf_want_line;
   wire [2*(LANES+1)*SLOT_BITS-1:0] leaf_want_slot;
   wire [LANES:0] leaf_room, leaf_waited, leaf_given;
@@ -237,7 +237,7 @@ module rp_traverser #(
         .node_given_slot_i(node_given_slot[g*SLOT_BITS +: SLOT_BITS]),
         .node_given_data_i(node_given_data[g*512 +: 512]),
         .leaf_want_o(leaf_want[2*g +: 2]),
-        .leaf_want_nobody_o(leaf_nobody[2*g +: 2]),
+        .leaf_want_prefetch_o(leaf_prefetch[2*g +: 2]),
         .leaf_want_line_o(leaf_want_line[2*g*LINE_BITS +: 2*LINE_BITS]),
         .leaf_want_slot_o(leaf_want_slot[2*g*SLOT_BITS +: 2*SLOT_BITS]),
         .leaf_taken_i(leaf_taken[2*g +: 2]),
@@ -376,7 +376,7 @@ module rp_traverser #(
     .slot_free_o(slot_free),
     .slot_free_slot_o(slot_free_slot),
     .want_o(leaf_want[2*LANES +: 2]),
-    .want_nobody_o(leaf_nobody[2*LANES +: 2]),
+    .want_prefetch_o(leaf_prefetch[2*LANES +: 2]),
     .want_line_o(leaf_want_line[2*LANES*LINE_BITS +: 2*LINE_BITS]),
     .want_slot_o(leaf_want_slot[2*LANES*SLOT_BITS +: 2*SLOT_BITS]),
     .taken_i(leaf_taken[2*LANES +: 2]),
@@ -417,7 +417,7 @@ module rp_traverser #(
     .want_valid_i(node_want),
     .want_line_i(node_want_line),
     .want_slot_i(node_want_slot),
-    .want_nobody_i({2*LANES{1'b0}}),
+    .want_prefetch_i({2*LANES{1'b0}}),
     .taken_o(node_taken),
     .waited_valid_o(node_waited),
     .waited_ready_i({LANES{1'b1}}),
@@ -442,7 +442,7 @@ module rp_traverser #(
     .want_valid_i(leaf_want),
     .want_line_i(leaf_want_line),
     .want_slot_i(leaf_want_slot),
-    .want_nobody_i(leaf_nobody),
+    .want_prefetch_i(leaf_prefetch),
     .taken_o(leaf_taken),
     .waited_valid_o(leaf_waited),
     .waited_ready_i(leaf_room),

@@ -68,7 +68,7 @@ module rp_traverser_lane #(
   input  wire [511:0]            node_given_data_i,
   // the triangle cache, as leaf_reader has it
   output wire [1:0]              leaf_want_o,
-  output wire [1:0]              leaf_want_nobody_o,
+  output wire [1:0]              leaf_want_prefetch_o,
   output wire [2*LINE_BITS-1:0]  leaf_want_line_o,
   output wire [2*SLOT_BITS-1:0]  leaf_want_slot_o,
   input  wire [1:0]              leaf_taken_i,
@@ -397,7 +397,7 @@ module rp_traverser_lane #(
     .start_slot_i(go_slot),
     .start_leaf_i({go_reference[62:32], go_reference[30:0]}),
     .want_o(leaf_want_o),
-    .want_nobody_o(leaf_want_nobody_o),
+    .want_prefetch_o(leaf_want_prefetch_o),
     .want_line_o(leaf_want_line_o),
     .want_slot_o(leaf_want_slot_o),
     .taken_i(leaf_taken_i),

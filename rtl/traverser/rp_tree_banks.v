@@ -25,7 +25,7 @@ module rp_tree_banks #(
   input  wire [2*LANES-1:0]           want_valid_i,
   input  wire [2*LANES*LINE_BITS-1:0] want_line_i,
   input  wire [2*LANES*SLOT_BITS-1:0] want_slot_i,
-  input  wire [2*LANES-1:0]           want_nobody_i,   // no ray waits for it yet: the lane is not given it
+  input  wire [2*LANES-1:0]           want_prefetch_i,   // no ray waits for it yet: the lane is not given it
   output wire [2*LANES-1:0]           taken_o,
   // of each lane: there is a line for which it has waited
   output wire [LANES-1:0]             waited_valid_o,
@@ -94,7 +94,7 @@ module rp_tree_banks #(
     .want_valid_i(want_valid_i),
     .want_line_i(want_line_i),
     .want_slot_i(want_slot_i),
-    .want_nobody_i(want_nobody_i),
+    .want_prefetch_i(want_prefetch_i),
     .silent_i(waited_valid_o),
     .taken_o(taken_o),
     .valid_o(look_valid),

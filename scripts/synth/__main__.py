@@ -8,6 +8,7 @@ import time
 
 from . import elaborate, fit, flow, growth, module, pictures, power, prove, replay, report, timing
 from .errors import SynthError, say, warn
+from .phases import Phases
 
 
 def config_of(arguments):
@@ -57,6 +58,13 @@ def store(result, path):
     os.rename(path + ".new", path)
 
 
+# Phases that add to a report what it is asked for: what each does.
+ADDED = {
+    "power": "simulate the netlist, then estimate its power",
+    "proofs": "prove each kind of block equal to its RTL",
+}
+
+
 def made_report(options, wanted):
     """The design and its report, made or kept; `wanted`: names of what is added to it, power or proofs."""
     design = flow.open_design(options)
@@ -64,8 +72,11 @@ def made_report(options, wanted):
     key = flow.digest(design)
     begin = time.time()
     result = kept_report(path, key)
+    extra = {name: does for name, does in ADDED.items() if name in wanted and not (result and result[name])}
     if result is None:
+        design.phases = Phases({**flow.phases_of(options), **extra}, design.folder)
         flow.synthesise(design)
+        design.phases.begin("report")
         worst = timing.describe(
             [design.endpoints[0].pin],
             design.verilog,
@@ -81,11 +92,13 @@ def made_report(options, wanted):
         store(result, path)
         pictures.area_bars(result, os.path.join(design.folder, "area.png"))
     for name, estimate in (("power", power.estimate), ("proofs", prove.prove)):
-        if name in wanted and not result[name]:
+        if name in extra:
             if design.netlist is None:
-                map_as_kept(design, result)
+                map_as_kept(design, result, extra)
+            design.phases.begin(name)
             result[name] = estimate(design)
             store(result, path)
+    design.phases.end()
     return design, result
 
 
@@ -121,22 +134,29 @@ def kept_report(path, key):
     return kept if kept["key"] == key else None
 
 
-def map_as_kept(design, kept):
-    """The netlist of a kept report (None: one that was not timed)."""
+def map_as_kept(design, kept, then):
+    """The netlist of a kept report (None: one that was not timed); `then`: the phases that follow, what each does."""
+    first = {name: does for name, does in flow.phases_of(design.options).items() if name in ("elaborate", "map")}
+    design.phases = Phases({**first, **then}, design.folder)
     flow.prepare(design)
+    design.phases.begin("map")
     efforts = kept["timing"]["efforts"] if kept else {}
     design.efforts = {k.identity: efforts[k.name] for k in design.kinds.values() if k.name in efforts}
     flow.map_design(design)
 
 
-def netlist_of(arguments):
+def netlist_of(arguments, name, does):
+    """The netlist that is kept or mapped, for a phase of this name that begins then."""
     design = flow.open_design(options_of(arguments))
-    map_as_kept(design, kept_report(os.path.join(design.folder, "report.json"), flow.digest(design)))
+    map_as_kept(design, kept_report(os.path.join(design.folder, "report.json"), flow.digest(design)), {name: does})
+    design.phases.begin(name)
     return design
 
 
 def replay_command(arguments):
-    replay.replay(netlist_of(arguments), arguments.break_number)
+    design = netlist_of(arguments, "replay", "run the netlist in lockstep with the model")
+    replay.replay(design, arguments.break_number)
+    design.phases.end()
 
 
 def prove_command(arguments):
@@ -150,7 +170,9 @@ def prove_command(arguments):
                 f"ONLY={arguments.only}: {design.options.title} has no block {', '.join(sorted(only - known))}; "
                 f"it has {', '.join(sorted(known))}"
             )
-    verdicts = prove.prove(netlist_of(arguments), only)
+    design = netlist_of(arguments, "proofs", ADDED["proofs"])
+    verdicts = prove.prove(design, only)
+    design.phases.end()
     say(report.proofs_line(verdicts))
     if any(v == "different" for v in verdicts.values()):
         raise SynthError("a mapped block differs from its RTL")

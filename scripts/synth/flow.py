@@ -14,6 +14,7 @@ from .errors import SynthError, progress
 from .library import BUILD, ROOT, Library
 from .memories import MemoryModel
 from .netlist import Netlist
+from .phases import Phases
 
 # Rounds of mapping for speed what lies on failing paths; how many there are at most where the user wants more.
 CLOSURE_ROUNDS = 4
@@ -65,6 +66,7 @@ class Design:
     efforts: dict = field(default_factory=dict)  # by kind's identity, where it is not the first
     buffers: dict = field(default_factory=dict)  # added to each kind for fan-out
     top: str = "compute_unit"
+    phases: Phases = field(default_factory=Phases)
 
     @property
     def verilog(self):
@@ -151,8 +153,25 @@ def digest(design):
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16]
 
 
+def phases_of(options, report=True):
+    """What synthesise() does, by name; with `report` what makes a report of it too."""
+    found = {
+        "elaborate": f"measure the library and elaborate {options.title}",
+        "map": "map each kind of block to the library's cells, most of the time where few are kept",
+        "time": "time the netlist",
+    }
+    if options.rounds:
+        found["close"] = "map for speed what lies on failing paths"
+    if options.rounds == CLOSURE_ROUNDS:
+        found["recover"] = "recover area where the clock allows it"
+    if report:
+        found["report"] = "trace the slowest path and write the report"
+    return found
+
+
 def prepare(design):
     """Elaborates, and measures the library."""
+    design.phases.begin("elaborate")
     work = os.path.join(design.folder, "work")
     os.makedirs(work, exist_ok=True)
     design.fo4_ns = timing.measure_fo4(design.library, work)
@@ -166,7 +185,8 @@ def prepare(design):
 def mapper_of(design):
     options = design.options
     # A user with more rounds than usual has the time.
-    return mapping.Mapper(design.library, BUILD, design.clock_ns, options.jobs, options.rounds > CLOSURE_ROUNDS)
+    thorough = options.rounds > CLOSURE_ROUNDS
+    return mapping.Mapper(design.library, BUILD, design.clock_ns, options.jobs, thorough, design.phases)
 
 
 def map_design(design):
@@ -268,7 +288,7 @@ def win_back(design, work, slack):
         map_design(design)
         reached = time_design(design, work)
         names = ", ".join(sorted(design.kinds[i].name for i in lower))
-        progress(f"synth: slack {reached:+.3f} ns; for area: {names}")
+        design.phases.note(f"slack {reached:+.3f} ns; for area: {names}")
         if reached >= needed:
             design.efforts = {i: effort for i, effort in design.efforts.items() if effort}
             return reached
@@ -287,13 +307,15 @@ def close_timing(design, work, slack):
     """
     efforts = dict(design.efforts)
     best = slack
-    for _ in range(design.options.rounds):
+    for number in range(1, design.options.rounds + 1):
         if slack >= 0:
             break
         more = next_effort(design, on_failing_paths(design, work))
         if not more:
             break
-        progress(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")
+        names = ", ".join(sorted(design.kinds[i].name for i in more))
+        turn = f"round {number} of at most {design.options.rounds}"
+        design.phases.note(f"{turn}: slack {slack:+.3f} ns; for speed: {names}")
         design.efforts.update({i: design.efforts.get(i, 0) + 1 for i in more})
         map_design(design)
         slack = time_design(design, work)
@@ -301,7 +323,7 @@ def close_timing(design, work, slack):
             best, efforts = slack, dict(design.efforts)
     if slack == best:
         return slack
-    progress(f"synth: slack {slack:+.3f} ns; back to the netlist with {best:+.3f} ns")
+    design.phases.note(f"slack {slack:+.3f} ns; back to the netlist with {best:+.3f} ns")
     design.efforts = efforts
     map_design(design)
     return time_design(design, work)
@@ -310,8 +332,14 @@ def close_timing(design, work, slack):
 def synthesise(design):
     """The whole of it. design.netlist and design.endpoints hold the result."""
     work = prepare(design)
+    design.phases.begin("map")
     map_design(design)
+    design.phases.begin("time")
     slack = time_design(design, work)
-    progress(f"synth: {design.options.title}: slack {slack:+.3f} ns at {design.clock_ns:g} ns")
+    design.phases.note(f"{design.options.title}: slack {slack:+.3f} ns at {design.clock_ns:g} ns")
+    design.phases.begin("close")
     slack = close_timing(design, work, slack)
-    return win_back(design, work, slack) if design.options.rounds == CLOSURE_ROUNDS else slack
+    if design.options.rounds == CLOSURE_ROUNDS:
+        design.phases.begin("recover")
+        slack = win_back(design, work, slack)
+    return slack

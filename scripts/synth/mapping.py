@@ -7,11 +7,13 @@ import json
 import os
 import re
 import subprocess
+import time
 
 from . import clock_gates
 from .elaborate import PREFIX, defines, read_rtl, rtl_texts, text_of
-from .errors import SynthError, need, run, progress
+from .errors import SynthError, need, run
 from .library import ROOT, keep
+from .phases import Phases, about
 
 # ABC sees neither clock-to-output nor set-up time: it gets this share of the period.
 LOGIC_SHARE = 0.7
@@ -76,13 +78,38 @@ def constant(bits):
     return str(int(bits, 2)) if len(bits) == 32 else f"{len(bits)}'b{bits}"
 
 
+class Remaining:
+    """How long the mapping of kinds of block still takes, by their sizes and the time that those that are done took."""
+
+    # Of all sizes: before that the guess is worth nothing.
+    LEAST_SHARE = 0.3
+    # What is shorter is not worth a word.
+    LEAST_SECONDS = 30
+    # Reading the Verilog and the library takes as long for a small kind as the logic of so many bits.
+    FIXED = 10000
+
+    def __init__(self, kinds, now=time.monotonic):
+        self.all = sum(kind.bits + self.FIXED for kind in kinds)
+        self.done = 0
+        self.now = now
+        self.begun = now()
+
+    def after(self, kind):
+        """When `kind` is done too: words that go behind a line, or none where nothing can be said."""
+        self.done += kind.bits + self.FIXED
+        share = self.done / self.all
+        left = (self.now() - self.begun) * (1 / share - 1)
+        return f", about {about(left)} left" if share >= self.LEAST_SHARE and left >= self.LEAST_SECONDS else ""
+
+
 class Mapper:
-    def __init__(self, library, folder, clock_ns, jobs=2, thorough=False):
+    def __init__(self, library, folder, clock_ns, jobs=2, thorough=False, phases=None):
         self.library = library
         self.folder = os.path.join(folder, "kinds")
         os.makedirs(self.folder, exist_ok=True)
         self.clock_ns = clock_ns
         self.jobs = jobs
+        self.phases = phases or Phases()
         self.cells = library.usable_file(os.path.join(folder, "libraries"))
         self.constraints = self.cells.removesuffix(".lib") + ".constr"
         self.output_load = f"{1000 * library.loads_pf['output']:.4g}"
@@ -254,9 +281,11 @@ write_json {result}
         missing = [k for path, k in of_path.items() if not os.path.exists(path)]
         if missing:
             speed = " for speed" if efforts else ""
-            progress(f"synth: mapping {len(missing)} of {len(kinds)} kinds of block{speed}")
+            kept = f"; {len(kinds) - len(missing)} are kept" if len(missing) < len(kinds) else ""
+            self.phases.note(f"{len(missing)} kinds of block to map{speed}{kept}")
         # The large ones first, so that the last to finish is a small one.
         missing.sort(key=lambda k: -k.bits)
+        left = Remaining(missing)
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             pending = {pool.submit(self.map_one, k, efforts.get(k.identity, 0)): k for k in missing}
             for count, done in enumerate(concurrent.futures.as_completed(pending), 1):
@@ -266,5 +295,5 @@ write_json {result}
                 except SynthError as error:
                     pool.shutdown(cancel_futures=True)
                     raise SynthError(f"{kind.name} cannot be mapped: {error}") from error
-                progress(f"synth: {count} of {len(missing)}: {kind.name}")
+                self.phases.note(f"block {count} of {len(missing)}: {kind.name}{left.after(kind)}")
         return {k.identity: self.kept(k, efforts.get(k.identity, 0)) for k in kinds}

@@ -6,6 +6,7 @@ from . import elaborate, flow
 from .errors import SynthError, progress
 from .library import BUILD, Library
 from .memories import MemoryModel
+from .phases import Phases
 
 
 def parsed(text):
@@ -32,6 +33,7 @@ def synthesise(name, rows, options):
         design = flow.Design(options, library, parsed(text) if text else {}, folder, top=name)
         design.options.config = f"{name} {text}".strip()
         design.memory = MemoryModel(library)
+        design.phases = Phases(flow.phases_of(design.options, report=False), folder)
         try:
             flow.synthesise(design)
         except SynthError as error:
@@ -39,6 +41,7 @@ def synthesise(name, rows, options):
             if unknown:
                 raise SynthError(f"{name} has no parameter {unknown[1]}") from error
             raise
+        design.phases.end()
         progress(f"synth: {design.options.config} is done")
         found.append((text, design))
     return found

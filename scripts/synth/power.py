@@ -9,7 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 
 from . import replay, report, timing
-from .errors import SynthError, progress
+from .errors import SynthError
 
 KERNEL = ["sim", "room", "--size", "8x8", "--depth", "1"]
 # What only holds other blocks together: those in it have an activity of their own each.
@@ -167,7 +167,7 @@ def estimate(design):
         watts = {"internal_w": internal, "switching_w": switching, "leakage_w": leakage, "memory_w": memory}
         shares.append((part, watts))
     total = sum(sum(watts.values()) for _, watts in shares)
-    progress(f"synth: power over {cycles} cycles of a rendered picture: {total:.3f} W")
+    design.phases.note(f"power over {cycles} cycles of a rendered picture: {total:.3f} W")
     return {
         "kernel": " ".join(KERNEL[:4]),
         "cycles": cycles,

@@ -10,7 +10,7 @@ import subprocess
 
 from . import clock_gates, mapping
 from .elaborate import PREFIX, defines, read_rtl, rtl_texts, text_of
-from .errors import need, run, progress
+from .errors import need, run
 
 SECONDS = 120
 ABC = "read_aiger {aig}; strash; scorr; dprove"
@@ -213,5 +213,5 @@ def prove(design, only=None):
         for done in concurrent.futures.as_completed(pending):
             name = design.kinds[pending[done]].name
             verdicts[name] = done.result()
-            progress(f"prove: {name}: {verdicts[name]}")
+            design.phases.note(f"block {len(verdicts)} of {len(chosen)}: {name}: {verdicts[name]}")
     return verdicts

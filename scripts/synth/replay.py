@@ -361,12 +361,12 @@ def replay(design, break_number=0):
     if what:
         say(f"replay: broken on purpose: {what}")
     library = build(design, folder)
-    # A failing program is shrunk into the netlist's folder: its fault is not the RTL's.
+    # A failing program is minimised into the netlist's folder: its fault is not the RTL's.
     # A machine that was fitted may have no reflections.
     chip = json.loads(elaborate.ask(design.options.config, "--json"))["chip"]
     runs = [
         SCENE + ["--depth", "2" if chip["reflections"] else "1"],
-        ["cosim", "--programs", str(PROGRAMS), "--seed", "1", "--save", folder] + (["--no-shrink"] if what else []),
+        ["cosim", "--programs", str(PROGRAMS), "--seed", "1", "--save", folder] + (["--no-minimise"] if what else []),
     ][: 1 if design.options.units else 2]  # programs alone run on a unit
     for arguments in runs:
         passed, text = lockstep(design, library, folder, arguments)

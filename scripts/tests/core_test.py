@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""raypool.core describes rtl/ as it is: scripts/tests/core_test.py RAYPOOL
+"""raypool.core describes rtl/ as it is: scripts/tests/core_test.py RAYPOOL-TABLES
 
 It is what scripts/core.py writes; every file of rtl/ is in it once; its parameters are those of
 rtl/compute/rp_multiprocessor.v
@@ -39,7 +39,7 @@ class Core(unittest.TestCase):
                 self.files.append((next(iter(entry)), True) if isinstance(entry, dict) else (entry, False))
 
     def test_is_what_the_script_writes(self):
-        subprocess.run([ROOT / "scripts" / "core.py", RAYPOOL, "--check"], check=True)
+        subprocess.run([ROOT / "scripts" / "core.py", TABLES, "--check"], check=True)
 
     def test_lists_every_file_once(self):
         rtl = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "rtl").rglob("*") if path.is_file())
@@ -71,5 +71,5 @@ class Core(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    RAYPOOL = sys.argv[1]
+    TABLES = sys.argv[1]
     unittest.main(argv=sys.argv[:1])

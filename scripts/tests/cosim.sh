@@ -7,7 +7,7 @@ cd "$(dirname "$0")/../.." || exit 1
 mkdir -p "$folder"
 # shellcheck source=scripts/tests/expect.bash
 . scripts/tests/expect.bash
-cosim=("$raypool" cosim --quiet --no-shrink)
+cosim=("$raypool" cosim --quiet --no-minimise)
 
 mapfile -t machines < <("$raypool" cosim --machines)
 expect "machines share the programs, and one table has them all" 0 "cosim on ${#machines[@]} machines: 9 programs" \

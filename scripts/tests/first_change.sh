@@ -16,5 +16,5 @@ lint='verilator --lint-only -Wall --default-language 1364-2005'
 take run "$lint -Irtl/include rtl/waivers.vlt --top-module rp_multiprocessor rtl/*/*.v"
 [ ! -s "$output" ] || { cat "$output"; fail "Verilator warns of the page's change"; }
 take run 'scripts/build.sh build raypool_config_test && build/cpp_model/raypool_config_test --gtest_brief=1'
-take run 'python3 scripts/tests/core_test.py build/raypool'
+take run 'python3 scripts/tests/core_test.py build/raypool-tables'
 echo "$(steps), as the page has them"

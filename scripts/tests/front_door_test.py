@@ -81,7 +81,7 @@ class Help(unittest.TestCase):
     def test_every_variable_that_help_all_lists_reaches_its_targets(self):
         lost = []
         for targets, name in variables():
-            if name == "SCENES":  # the sweep itself reads it
+            if name == "SCENES":  # the programs themselves read it
                 continue
             for target in targets:
                 words = ["-n", target, *(["ENGINE=sampled"] if name == "SEED" else [])]
@@ -100,7 +100,7 @@ class Values(unittest.TestCase):
         (self.folder / "studies").mkdir()
         for name in ("Makefile", STUDIES):
             shutil.copy(ROOT / name, self.folder / name)
-        for name in ("setup.sh", "configure.sh", "build.sh", "unit.sh", "raypool"):
+        for name in ("setup.sh", "configure.sh", "build.sh", "unit.sh", "check_frame.sh", "raypool"):
             path = self.folder / ("build" if name == "raypool" else "scripts") / name
             path.parent.mkdir(exist_ok=True)
             path.write_text("#!/bin/bash\n" + "printf '%s\\n' \"$@\"\n" * (name == "raypool"))
@@ -154,6 +154,61 @@ class Values(unittest.TestCase):
         done = make("synth", "CUS=2", folder=self.folder)
         self.assertEqual(done.returncode, 2)
         self.assertIn("CUS is for whole chips: make synth CHIP=1 CUS=2, or leave it out", done.stderr)
+
+
+class Frames(unittest.TestCase):
+    """What make sim refuses before it builds."""
+
+    def checked(self, **variables):
+        done = subprocess.run([ROOT / "scripts" / "check_frame.sh"], capture_output=True, text=True, check=False,
+                              env={"PATH": "/usr/local/bin:/usr/bin:/bin", **variables})  # fmt: skip
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.returncode, 1 if done.stderr else 0)
+        self.assertLessEqual(done.stderr.count("\n"), 1)
+        return done.stderr
+
+    def test_what_can_be_drawn_passes(self):
+        self.assertEqual(self.checked(), "")
+        defaults = dict(re.findall(r"^export ([A-Z]+) \?= (\S+)$", MAKEFILE, re.M))
+        self.assertEqual(self.checked(**defaults), "")
+        for engine in re.search(r"ENGINE=(\S+)", MAKEFILE)[1].split("|"):
+            self.assertEqual(self.checked(ENGINE=engine), "")
+        for name, values in (("SCENE", ("cornell", "tour", "tour.obj", "examples/tour.obj")), ("CUS", ("1", "2", "4")),
+                             ("CONFIG", ("best", "best_4w4c", "32w1c", "configs/8w8c.json")), ("DEPTH", ("1", "254")),
+                             ("EYE", ("-1,2.5,+3e4", "0,0,0")), ("SIZE", ("1x1", "16384x16384")),
+                             ("VIEW", ("configs/views/conference.json",)), ("DETAIL", ("0.25",))):  # fmt: skip
+            for value in values:
+                self.assertEqual(self.checked(**{name: value}), "", f"{name}={value}")
+
+    def test_what_cannot_is_one_sentence_with_the_nearest(self):
+        for name, value, words in (
+            ("ENGINE", "lockstp", "did you mean lockstep?"), ("CUS", "3", "none of: 1 2 4"),
+            ("SIZE", "8", "256x256"), ("SIZE", "0x8", "1 to 16384"), ("SIZE", "8x20000", "1 to 16384"),
+            ("DEPTH", "0", "from 1 to 254"), ("DEPTH", "255", "from 1 to 254"), ("DEPTH", "two", "from 1 to 254"),
+            ("THREADS", "0", "from 1 to 256"), ("DETAIL", "fine", "a number"), ("FOV", "wide", "a number"),
+            ("EYE", "1,2", "three numbers"), ("UP", "0,1,z", "three numbers"),
+            ("VIEW", "configs/views/confrence.json", "did you mean configs/views/conference.json?"),
+            ("CONFIG", "8w8d", "did you mean 8w8c?"), ("CONFIG", "configs/8w8.json", "mean configs/8w8c.json?"),
+            ("SCENE", "rom", "did you mean room?"), ("SCENE", "tuor", "did you mean examples/tour.obj?"),
+            ("SCENE", "examples/tuor.obj", "did you mean examples/tour.obj?"), ("SCENE", "none.glb", "no such scene"),
+        ):  # fmt: skip
+            said = self.checked(**{name: value})
+            self.assertTrue(said.startswith(f"make sim: {name}={value}"), said)
+            self.assertIn(words, said)
+
+    def test_scenes_are_looked_for_in_folders(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "bunny.glb").write_text("")
+            for scene in ("bunny", "bunny.glb"):
+                self.assertEqual(self.checked(SCENE=scene, SCENES=f"/nowhere:{folder}"), "")
+            self.assertIn(f"did you mean {folder}/bunny.glb?", self.checked(SCENE="bunyn", SCENES=folder))
+            self.assertIn("no such scene", self.checked(SCENE="bunny"))
+
+    def test_nothing_is_built_for_what_is_refused(self):
+        done = make("sim", "SIZE=8", "BUILD=/proc/none")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("make sim: SIZE=8 is not WIDTHxHEIGHT", done.stderr)
+        self.assertNotIn("/proc/none", done.stderr)
 
 
 class Readme(unittest.TestCase):

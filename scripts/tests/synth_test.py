@@ -12,7 +12,8 @@ from unittest import mock
 
 from small_blocks import ROOT, SmallBlocks, small_design
 
-from synth import elaborate, fit, flow, function, library, macros, mapping, module, netlist, power, report, timing
+from synth import elaborate, fit, flow, function, library, macros, mapping, module, netlist, phases, power, report
+from synth import timing
 from synth.errors import SynthError
 from synth.memories import MemoryModel
 
@@ -288,6 +289,45 @@ class Synthesis(SmallBlocks):
             self.assertEqual(done["map_design"].call_count, 1 + rounds)
             self.assertEqual(done["win_back"].call_count, 1 if rounds == flow.CLOSURE_ROUNDS else 0)
             self.assertEqual(slack, -0.5 if rounds == flow.CLOSURE_ROUNDS else -1.0)
+
+    def test_every_phase_says_which_of_how_many_it_is_and_how_long_it_took_last_time(self):
+        def lines(rounds, slack, wanted):
+            options = flow.Options(config="1w1c", rounds=rounds)
+            design = flow.Design(options, library.Library(), {}, self.folder)
+            printed = []
+            with mock.patch.multiple(flow, timing=mock.DEFAULT, elaborate=mock.DEFAULT, map_design=mock.DEFAULT,
+                                     time_design=mock.DEFAULT, win_back=mock.DEFAULT) as done, \
+                 mock.patch.object(phases, "progress", printed.append):  # fmt: skip
+                done["timing"].measure_fo4.return_value = 0.1
+                done["time_design"].return_value = slack
+                design.phases = phases.Phases({**flow.phases_of(options), **wanted}, self.folder)
+                flow.synthesise(design)
+                design.phases.begin("report")
+                for name in wanted:
+                    design.phases.begin(name)
+                design.phases.end()
+            return printed
+
+        first = lines(flow.CLOSURE_ROUNDS, 0.1, {"power": "estimate power"})
+        numbered = [line for line in first if ": phase " in line and "slack" not in line]
+        self.assertEqual([line.split(":")[1].strip() for line in numbered], [f"phase {k} of 7" for k in range(1, 8)])
+        self.assertEqual(numbered[-1], "synth: phase 7 of 7: estimate power")
+        self.assertTrue(any(line.startswith("synth: phase 3 of 7, 1w1c: slack +0.100 ns") for line in first), first)
+        # With other rounds no area is recovered, and with none nothing is mapped for speed: no number is left out.
+        for rounds, count in ((2, 5), (0, 4)):
+            self.assertIn(f"synth: phase {count} of {count}: trace", lines(rounds, 0.1, {})[-1])
+        with open(os.path.join(self.folder, "phases.json"), "w", encoding="utf-8") as file:
+            json.dump({"map": 221.0, "time": 2.0}, file)
+        again = lines(flow.CLOSURE_ROUNDS, 0.1, {})
+        self.assertRegex(again[1], r"phase 2 of 6: map each .* \(last time 4 min\)$")
+        self.assertNotIn("last time", again[2])
+
+    def test_mapping_says_how_long_it_still_takes_when_it_knows(self):
+        # Of 100 thousand in all, what each costs whatever its size included.
+        kinds = [mock.Mock(bits=bits) for bits in (10000, 20000, 30000, 0)]
+        seconds = iter((0, 60, 100, 180, 200))
+        left = mapping.Remaining(kinds, lambda: next(seconds))
+        self.assertEqual([left.after(kind) for kind in kinds], ["", ", about 2 min left", "", ""])
 
     def test_a_file_is_reported_by_its_name_and_not_by_its_folder(self):
         options = flow.Options(config="/elsewhere/configurations/4w4c+1_change.json", units=2, rounds=6)

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <regex>
 #include <vector>
 
 #include "cli/help.hpp"
@@ -69,6 +70,32 @@ std::string given_twice(const CLI::App& app) {
   return "";
 }
 
+/// "compare needs b, report.json of the other run: raypool compare a b", of the first word that is missing; empty if
+/// none is.
+std::string missing_word(const CLI::App& app) {
+  if (app.get_subcommands().empty()) return "";
+  const CLI::App& command = *app.get_subcommands().front();
+  const auto words = command.get_options([](const CLI::Option* option) { return option->get_positional(); });
+  std::string call = app.get_name() + " " + command.get_name();
+  for (const CLI::Option* word : words)
+    if (word->get_required()) call += " " + word->get_name(true);
+  for (const CLI::Option* word : words) {
+    if (!word->get_required() || word->count() > 0) continue;
+    return fmt::format("{} needs {}, {}: {}", command.get_name(), word->get_name(true), word->get_description(), call);
+  }
+  return "";
+}
+
+/// "--units is 3: give 1, 2 or 4", of what CLI11 says of a value that is none of those there are; empty otherwise.
+std::string not_among(const std::string& text) {
+  static const std::regex kNotIn(R"((-\S+|\w+): (.*) not in \{(.*)\})");
+  std::smatch match;
+  if (!std::regex_match(text, match, kNotIn)) return "";
+  std::string choices = std::regex_replace(match[3].str(), std::regex(","), ", ");
+  if (const size_t last = choices.rfind(", "); last != std::string::npos) choices.replace(last, 2, " or ");
+  return fmt::format("{} is {}: give {}", match[1].str(), match[2].str(), choices);
+}
+
 }  // namespace
 
 std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
@@ -78,7 +105,11 @@ std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
   const auto commands = app.get_subcommands();
   if (twice.empty() && commands.empty())
     return fmt::format("give a command, such as sim; {} --help lists all", app.get_name());
-  return fmt::format("{} ({}{} --help shows what there is)", twice.empty() ? error.what() : twice, app.get_name(),
+  std::string text = twice;
+  if (text.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) text = missing_word(app);
+  if (text.empty()) text = not_among(error.what());
+  if (text.empty()) text = error.what();
+  return fmt::format("{} ({}{} --help shows what there is)", text, app.get_name(),
                      commands.empty() ? "" : " " + commands.front()->get_name());
 }
 

@@ -11,13 +11,16 @@ namespace {
 std::string refusal_of(const std::string& words) {
   CLI::App app("a program", "raypool");
   app.require_subcommand(1);
-  std::string scene, size, kernel;
+  std::string scene, size, kernel, data;
+  int units = 1;
   bool verilog = false;
   CLI::App* sim = app.add_subcommand("sim", "draw")->group(command_group::kSimulate);
   sim->add_option("--scene,scene", scene);
   sim->add_option("--size", size);
   CLI::App* run = app.add_subcommand("run", "compute")->group(command_group::kSimulate);
-  run->add_option("kernel", kernel)->required();
+  run->add_option("kernel", kernel, "saxpy, matmul, or an assembly file")->required();
+  run->add_option("data", data, "its data")->required();
+  run->add_option("--units", units)->check(CLI::IsMember({1, 2, 4}));
   run->add_option("--out,-o", kernel);
   CLI::App* isa = app.add_subcommand("isa", "print")->group(command_group::kMachine);
   isa->add_option_group("Format (at most one)")->add_flag("--verilog", verilog);
@@ -67,7 +70,13 @@ TEST(Refusal, WhatElseIsWrongSaysWhereToLook) {
   EXPECT_EQ(refusal_of("sim room cornell"), "sim does not take 'cornell'; raypool sim --help shows what it takes");
   EXPECT_EQ(refusal_of("sim --size 8x8 --size 9x9"),
             "--size is given 2 times (8x8, 9x9): give it once (raypool sim --help shows what there is)");
-  EXPECT_EQ(refusal_of("run"), "kernel is required (raypool run --help shows what there is)");
+  EXPECT_EQ(refusal_of("run"),
+            "run needs kernel, saxpy, matmul, or an assembly file: raypool run kernel data (raypool run --help shows "
+            "what there is)");
+  EXPECT_EQ(refusal_of("run saxpy"),
+            "run needs data, its data: raypool run kernel data (raypool run --help shows what there is)");
+  EXPECT_EQ(refusal_of("run saxpy data --units 3"),
+            "--units is 3: give 1, 2 or 4 (raypool run --help shows what there is)");
 }
 
 }  // namespace

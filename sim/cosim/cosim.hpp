@@ -23,7 +23,7 @@ class RunObserver {
 };
 
 /// A program that ends otherwise than it must: another fault, or no end. Of the program and the unit, not of what
-/// stands around them, so that shrinking the program makes sense.
+/// stands around them, so that minimising the program makes sense.
 struct ProgramFailure : InputError {
   using InputError::InputError;
 };

@@ -1,4 +1,4 @@
-// What random programs, their files, their shrinking and the covering sets promise.
+// What random programs, their files, their minimising and the covering sets promise.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 
 #include "cosim/coverage.hpp"
 #include "cosim/covering.hpp"
+#include "cosim/minimise.hpp"
 #include "cosim/program_check.hpp"
 #include "cosim/program_file.hpp"
 #include "cosim/program_profile.hpp"
-#include "cosim/shrink.hpp"
 #include "isa/encoding.hpp"
 #include "machine/chip/chip_device.hpp"
 #include "machine/compute/functional_unit.hpp"
@@ -293,7 +293,7 @@ TEST(SavedPrograms, AreReadAsTheyWereWritten) {
   EXPECT_THROW(load_saved_program("no/such/file.json"), InputError);
 }
 
-TEST(Shrinking, MovesTargetsWithTheirInstructions) {
+TEST(Minimising, MovesTargetsWithTheirInstructions) {
   const RandomProgram program = program_of(assembled(R"(
           mov r1, 1
           jany 3
@@ -309,7 +309,7 @@ TEST(Shrinking, MovesTargetsWithTheirInstructions) {
   EXPECT_EQ(check_program(configuration_of(1, 1), shorter), "");
 }
 
-TEST(Shrinking, MovesWhatIsRewritten) {
+TEST(Minimising, MovesWhatIsRewritten) {
   RandomProgram program = program_of(assembled("mov r1, 1; mov r2, 1; jany 3; exit"));
   Rewrite rewrite;
   rewrite.code[1] = assembled("mov r2, 5")[0];
@@ -322,22 +322,22 @@ TEST(Shrinking, MovesWhatIsRewritten) {
   EXPECT_EQ(without_instructions(program, 1, 1).kernels.front().rewrite->code.size(), 1u);
 }
 
-TEST(Shrinking, LeavesTheCulpritAndAValidProgram) {
+TEST(Minimising, LeavesTheCulpritAndAValidProgram) {
   const Configuration configuration = configuration_of(4, 4);
-  int shrunk = 0;
+  int minimised = 0;
   for (uint64_t seed = 1; seed <= 30; ++seed) {
     const RandomProgram program = make_random_program(configuration, seed);
     if (program.faults != 0 || !contains(program, Opcode::Fdiv)) continue;
-    ++shrunk;
-    const RandomProgram shorter =
-        shrink_program(configuration, program, [](const RandomProgram& each) { return contains(each, Opcode::Fdiv); });
+    ++minimised;
+    const RandomProgram shorter = minimise_program(
+        configuration, program, [](const RandomProgram& each) { return contains(each, Opcode::Fdiv); });
     EXPECT_TRUE(contains(shorter, Opcode::Fdiv));
     EXPECT_EQ(check_program(configuration, shorter), "");
     EXPECT_LE(shorter.program.code.size(), 8u) << "seed " << seed;
     EXPECT_EQ(shorter.kernels.size(), 1u);
     for (const StallStyle style : shorter.stalls.styles) EXPECT_EQ(style, StallStyle::None);
   }
-  EXPECT_GT(shrunk, 3);
+  EXPECT_GT(minimised, 3);
 }
 
 TEST(Stalls, OpenAndShutByTheirStyle) {

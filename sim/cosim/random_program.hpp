@@ -66,7 +66,7 @@ struct RandomProgram {
 RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length = 120, int units = 1,
                                   const std::string& mix = "");
 
-/// The limits that the unit is given: never less than there is, whatever shrinking has left.
+/// The limits that the unit is given: never less than there is, whatever minimising has left.
 uint32_t told_length(const RandomProgram& program);
 uint32_t told_limit(const RandomProgram& program);
 

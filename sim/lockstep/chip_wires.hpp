@@ -16,7 +16,7 @@
   X(still) X(reciprocal) X(exponent) X(padding) X(limit_key) X(main_axis) X(shear) X(direction) X(node_fault) \
   X(node_fault_reason) X(node_fault_line) X(done_valid) X(done_ready) X(done_slot) X(done_hit) X(done_t) X(done_place) \
   X(node_want) X(node_want_line) X(node_want_slot) X(node_taken) X(node_given) X(node_given_slot) X(node_given_data) \
-  X(leaf_want) X(leaf_nobody) X(leaf_want_line) X(leaf_want_slot) X(leaf_taken) X(leaf_room) X(leaf_waited) \
+  X(leaf_want) X(leaf_prefetch) X(leaf_want_line) X(leaf_want_slot) X(leaf_taken) X(leaf_room) X(leaf_waited) \
   X(leaf_given) X(leaf_given_slot) X(leaf_given_data) X(stack_request_valid) X(stack_request_ready) \
   X(stack_request_write) X(stack_request_slot) X(stack_request_block) X(stack_request_entries) X(stack_fill_valid) \
   X(stack_fill_entries) X(test_valid) X(test_ready) X(test_tag) X(test) X(result_valid) X(result_hit) X(result_tag) \

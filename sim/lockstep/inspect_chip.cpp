@@ -312,7 +312,7 @@ void ChipInspection::check_wants(const LineWants& wants, const Wire& valid, cons
     const uint32_t place = 2 * number + i;
     if (!expect(valid.flag(place), wants[i].valid, files, what) || !wants[i].valid) continue;
     expect(line.bits(place * kLineBits, kLineBits), wants[i].line, files, what);
-    if (!wants[i].nobody) expect(slot.bits(place * slot_bits, slot_bits), wants[i].slot, files, what);
+    if (!wants[i].prefetch) expect(slot.bits(place * slot_bits, slot_bits), wants[i].slot, files, what);
   }
 }
 

@@ -60,6 +60,12 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
        {&w_.missing, &mem_.missing, &cache_.missing, &miss_.missing, &sequencer_.missing, &ray_.missing}) {
     if (missing_.empty()) missing_ = *missing;
   }
+  yielded_pc_.resize(warps_);
+  for (uint32_t warp = 0; warp < warps_; ++warp) {
+    stacks_.emplace_back(rtl, fmt::format("{}.gen_warp[{}].warp.pc_stack", scope_of(unit), warp),
+                         configuration.stack_depth, configuration.pc_bits);
+    if (missing_.empty()) missing_ = stacks_.back().missing();
+  }
   for (uint32_t type = 0; type < kAluTypes; ++type) {
     const AluConfiguration alu = configuration.task_of(static_cast<AluType>(type));
     const bool piped = !kAluTable[type].timed_by_events();
@@ -83,6 +89,8 @@ void UnitInspection::reset(uint32_t program_length) {
   findings_.clear();
   stopped_ = argument_written_ = alu_fault_ = lookup_ = false;
   fetch_turn_ = {};
+  yielded_ = 0;
+  for (PcStackRule& stack : stacks_) stack.reset();
   instruction_cache_.reset();
   requests_ = missed_ = first_ = wants_ = warp_faults_ = 0;
   port_ = {};
@@ -114,6 +122,7 @@ void UnitInspection::advance(const UnitTransfers& given) {
   warp_faults_ = w_.warp_fault.value();
   alu_fault_ = w_.mem_fault.value() != 0 || w_.ray_fault.value() != 0;
   advance_memory_port(given);
+  advance_pc_stacks();
   advance_fetch(given);
   advance_instances();
   wants_ = w_.want.value() & ~w_.grant.value();
@@ -124,7 +133,9 @@ void UnitInspection::check() {
   if (stopped_ || !active()) return;
   now_ = model_->now();
   // What is wrong first: registers of a block, in the order in which blocks give to each
-  // other, then what follows from them.
+  // other, then what follows from them. A PC stack is held to its own inputs alone, so whatever it does wrong is its
+  // own.
+  check_pc_stacks();
   check_faults();
   check_launch();
   check_memory_port();
@@ -198,10 +209,10 @@ void UnitInspection::check_faults() {
     return find("rtl/compute/rp_compute_unit.v", "the fault that was raised is not the one shown");
   const bool other_pc = same_raiser && rtl.code == expected.code;
   const char* files =
-      other_pc ? "rtl/compute/rp_warp.v, rtl/compute/rp_compute_unit.v, rtl/compute/rp_pc_stack.v"
+      other_pc ? "rtl/compute/rp_warp.v, rtl/compute/rp_compute_unit.v, rtl/compute/rp_instruction_buffer.v"
       : code == FaultCode::IllegalInstruction ? "rtl/compute/rp_instruction_buffer.v, rtl/include/rp_isa_functions.vh"
-      : code == FaultCode::PcOutsideProgram   ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_pc_stack.v"
-      : code <= FaultCode::StackUnderflow     ? "rtl/compute/rp_pc_stack.v, rtl/compute/rp_warp.v"
+      : code == FaultCode::PcOutsideProgram   ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_warp.v"
+      : code <= FaultCode::StackUnderflow     ? "rtl/compute/rp_warp.v, rtl/compute/rp_pc_stack.v"
       : code == FaultCode::RayWordOutside     ? "rtl/compute/rp_ray_alu.v"
                                               : "rtl/compute/rp_mem_alu.v";
   const char* text = expected.code == FaultCode::None ? "a fault is raised that is none"
@@ -261,6 +272,35 @@ void UnitInspection::check_memory_port() {
 
 // ---- The instruction routine
 
+void UnitInspection::advance_pc_stacks() {
+  yielded_ = 0;
+  for (uint32_t warp = 0; warp < warps_; ++warp) {
+    PcStackRule& stack = stacks_[warp];
+    const bool start = (w_.start.value() >> warp & 1) != 0;
+    if (stack.yields() && !start) {
+      yielded_ |= 1u << warp;
+      yielded_pc_[warp] = stack.pc();
+    }
+    stack.take(start, w_.start_pc.value());
+  }
+}
+
+void UnitInspection::check_pc_stacks() {
+  for (uint32_t warp = 0; warp < warps_; ++warp) {
+    const char* broken = stacks_[warp].broken();
+    if (broken != nullptr)
+      find("rtl/compute/rp_pc_stack.v",
+           fmt::format("PC stack of warp {} (depth {} by its rule): {}", warp, stacks_[warp].depth(), broken));
+  }
+  for (uint32_t rest = yielded_; rest != 0; rest &= rest - 1) {
+    const uint32_t warp = lowest(rest);
+    const uint32_t pc = w_.fetch_pc.bits(warp * 16, 16);
+    if (pc != yielded_pc_[warp])
+      find("rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_warp.v, rtl/compute/rp_compute_unit.v",
+           fmt::format("warp {} fetches PC {}, its PC stack has given {}", warp, pc, yielded_pc_[warp]));
+  }
+}
+
 void UnitInspection::advance_fetch(const UnitTransfers& given) {
   requests_ = w_.fetch_request.value() & ~w_.fetch_grant.value();
   const bool missed = w_.instruction_miss.value() != 0;
@@ -314,7 +354,7 @@ void UnitInspection::check_fetch() {
     requests_ |= 1u << warp;
     // One that does not want yet has perhaps not gone on to it.
     if ((w_.fetch_request.value() >> warp & 1) != 0 && w_.fetch_pc.bits(warp * 16, 16) != next.fetch_pc) {
-      find("rtl/compute/rp_pc_stack.v, rtl/compute/rp_warp.v",
+      find("rtl/compute/rp_warp.v, rtl/compute/rp_instruction_buffer.v",
            fmt::format("warp {} fetches PC {}, after its last instruction comes {}", warp,
                        w_.fetch_pc.bits(warp * 16, 16), next.fetch_pc));
     }
@@ -323,12 +363,9 @@ void UnitInspection::check_fetch() {
   for (uint32_t warps = rtl ^ requests_; warps != 0; warps &= warps - 1) {
     const uint32_t warp = lowest(warps);
     const bool early = (rtl >> warp & 1) != 0;
-    const bool stack = early && w_.fetch_pc.bits(warp * 16, 16) != model_->timing(warp).fetch_pc;
     // Warps that wait for a line are woken when it has come.
-    find(stack ? "rtl/compute/rp_pc_stack.v, rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_warp.v"
-         : (refilled_ >> warp & 1) != 0
-             ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_compute_unit.v"
-             : "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_pc_stack.v, rtl/compute/rp_warp.v",
+    find((refilled_ >> warp & 1) != 0 ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_compute_unit.v"
+                                      : "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_warp.v",
          early ? fmt::format("warp {} asks the instruction cache too early", warp)
                : fmt::format("warp {} does not ask the instruction cache for PC {} in time", warp,
                              model_->timing(warp).fetch_pc));

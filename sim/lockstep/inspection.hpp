@@ -12,6 +12,7 @@
 
 #include "config/configuration.hpp"
 #include "lockstep/mismatch.hpp"
+#include "lockstep/pc_stack_rule.hpp"
 #include "lockstep/unit_wires.hpp"
 #include "machine/compute/block_scheduler.hpp"
 #include "machine/compute/compute_unit.hpp"
@@ -81,6 +82,8 @@ class UnitInspection {
   void advance_fetch(const UnitTransfers& given);
   void advance_memory_port(const UnitTransfers& given);
   void advance_instances();
+  void advance_pc_stacks();
+  void check_pc_stacks();
   void check_launch();
   void check_memory_port();
   void check_faults();
@@ -110,7 +113,8 @@ class UnitInspection {
   Configuration configuration_;
   uint32_t warps_, lanes_, warp_bits_, mshrs_;
   UnitWires w_;
-  std::vector<TaskWires> task_;  // [instance] its task register
+  std::vector<PcStackRule> stacks_;  // [warp]
+  std::vector<TaskWires> task_;      // [instance] its task register
   MemWires mem_;
   CacheWires cache_;
   MissWires miss_;
@@ -127,7 +131,9 @@ class UnitInspection {
   RoundRobin fetch_turn_;
   InstructionCache instruction_cache_;
   uint32_t requests_ = 0, missed_ = 0, first_ = 0, wants_ = 0;
-  uint32_t refilled_ = 0;  // warps that got their line in the cycle before
+  uint32_t refilled_ = 0;             // warps that got their line in the cycle before
+  uint32_t yielded_ = 0;              // warps of which the instruction buffer has got a PC in the cycle before
+  std::vector<uint32_t> yielded_pc_;  // [warp] the last one
   bool lookup_ = false, lookup_hit_ = false;
   uint32_t lookup_warp_ = 0, lookup_pc_ = 0;
   Port port_;

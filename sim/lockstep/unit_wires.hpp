@@ -22,6 +22,9 @@
   X(import_request_valid_o) X(export_valid_o) X(export_data_o) X(export_last_o) X(frame_valid_o) \
   X(frame_pixel_o) X(frame_color_o) X(launch_ready_o) X(fault_valid_o) X(fault_code_o) X(fault_warp_o) \
   X(fault_pc_o) X(retire_valid_o) X(retire_pc_o) X(retire_instruction_o) X(retire_mask_o) X(retire_data_o)
+#define RAYPOOL_PC_STACK_WIRES(X) \
+  X(step_i) X(pc_valid_o) X(pc_o) X(jump_i) X(push_i) X(push_return_i) X(pop_i) X(target_i) X(end_i) X(return_i) \
+  X(overflow_o) X(underflow_o) X(top_q)
 #define RAYPOOL_TASK_WIRES(X) \
   X(task_valid_o) X(task_warp_o) X(task_operation_o) X(task_mask_o) X(task_operand_a_o) X(task_operand_b_o) \
   X(task_operand_c_o) X(task_immediate_o) X(task_word_o) X(task_predicate_x_o) X(task_predicate_b_o)
@@ -59,6 +62,7 @@ struct Wires {
     Name(const ComputeUnit& unit, const std::string& scope) { LIST(RAYPOOL_FIND) } \
   };
 RAYPOOL_WIRES(UnitWires, RAYPOOL_UNIT_WIRES)
+RAYPOOL_WIRES(PcStackWires, RAYPOOL_PC_STACK_WIRES)
 RAYPOOL_WIRES(TaskWires, RAYPOOL_TASK_WIRES)
 RAYPOOL_WIRES(MemWires, RAYPOOL_MEM_WIRES)
 RAYPOOL_WIRES(CacheWires, RAYPOOL_CACHE_WIRES)

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "isa/did_you_mean.hpp"
 #include "scene/far_places.hpp"
 #include "scene/scene_cache.hpp"
 #include "scene/scene_file.hpp"
+#include "scene/scene_files.hpp"
 
 namespace raypool {
 namespace {
@@ -121,13 +121,7 @@ namespace {
 /// Below it products of two lengths may be zero in single precision.
 constexpr float kLeastDiagonal = 1e-18f;
 
-constexpr const char* kScenes = "cornell, room, or the path of a .obj, .gltf, .glb or .ply file";
-
 SceneFile load_file(const std::string& path, const std::string& camera, bool surfaces) {
-  if (std::error_code none; !std::filesystem::exists(path, none)) {
-    throw InputError(fmt::format("{}: no such scene{}", path,
-                                 did_you_mean(path, {"cornell", "room"}, fmt::format("give {}", kScenes))));
-  }
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".gltf" || ending == ".glb") return load_gltf(path, camera, surfaces);
@@ -179,10 +173,11 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
     throw InputError(fmt::format("{}: --camera is for glTF files; leave it out", name_or_path));
   SceneFile file;
   if (!built_in) {
-    const auto read = [&] { return load_file(name_or_path, options.camera, options.surfaces); };
+    const std::string path = find_scene(name_or_path);
+    const auto read = [&] { return load_file(path, options.camera, options.surfaces); };
     const std::optional<SceneCache>& cache = SceneCache::of_program();
     // The cache keeps no surfaces: textures are as quickly decoded as found.
-    file = cache && !options.surfaces ? cache->file(name_or_path, options.camera, read) : read();
+    file = cache && !options.surfaces ? cache->file(path, options.camera, read) : read();
     if (const float size = file.scene.bounds().diagonal(); size > 0 && size < kLeastDiagonal) {
       file.scene.warnings.push_back(fmt::format(
           "{}: all of it is {:.2g} across, too small for single precision: its shading is wrong; scale the file up",

@@ -104,7 +104,11 @@ struct SceneOptions {
   bool surfaces = false;
 };
 
-/// `name_or_path` is "cornell", "room" or the path of a file; its ending gives its format. Throws InputError.
+/// What can be drawn, for a refusal's end.
+inline constexpr const char* kScenes = "cornell, room, or the path of a .obj, .gltf, .glb or .ply file";
+
+/// `name_or_path` is "cornell", "room", or names a file as find_scene() has it; its ending gives its format. Throws
+/// InputError.
 Scene load_scene(const std::string& name_or_path, const SceneOptions& options = {});
 
 /// Closed box of 5.5 m with two blocks, one of them a mirror, camera and light inside.

@@ -99,7 +99,7 @@ struct CosimOptions {
   int length = 120;  ///< about how many instructions a program's body has
   std::string mix;   ///< of instructions; empty: each seed chooses one
   bool quiet = false;
-  bool shrink = true;                   ///< a program that fails is made short and saved
+  bool minimise = true;                 ///< a program that fails is made short and saved
   std::string save = "tb/regressions";  ///< folder for it
   std::string coverage;                 ///< JSON file with what was covered, empty: none
   std::string vectors;                  ///< file for another simulator to replay, empty: none

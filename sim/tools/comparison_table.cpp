@@ -107,12 +107,14 @@ void picture_line(std::string& text, const Json& picture) {
   }
 }
 
-void area_lines(std::string& text, const Json& area) {
+/// `commands`: what finds the area of each side; null where that is not known either.
+void area_lines(std::string& text, const Json& area, const Json& commands) {
   for (const char* side : {"a", "b"}) {
     const Json& found = area[side];
     if (found.is_null()) {
-      line(text, "area {}    not known: make synth of its configuration finds it",
-           side == std::string("a") ? "A" : "B");
+      const Json& command = commands[side];
+      line(text, "area {}    not known; `{}` finds it", side == std::string("a") ? "A" : "B",
+           command.is_null() ? "make synth CONFIG=..." : command.get<std::string>());
       continue;
     }
     const Json& rate = found["mrays_per_second_mm2"];
@@ -152,7 +154,7 @@ std::string comparison_table(const Json& comparison) {
   line(text, "  and {} figures that are the same, {} others that differ: --json has them", same, others);
   estimates_line(text, comparison["estimates"]);
   picture_line(text, comparison["picture"]);
-  area_lines(text, comparison["area"]);
+  area_lines(text, comparison["area"], comparison["synthesis"]);
   return text;
 }
 

@@ -14,8 +14,8 @@
 #include "cosim/cosim.hpp"
 #include "cosim/coverage.hpp"
 #include "cosim/machines.hpp"
+#include "cosim/minimise.hpp"
 #include "cosim/program_file.hpp"
-#include "cosim/shrink.hpp"
 #include "cosim/vector_recorder.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/rtl_loader.hpp"
@@ -133,24 +133,24 @@ std::string subject(const std::string& report) {
   return text;
 }
 
-/// Shrinks a program that fails, saves it, and throws what is to be reported.
+/// Minimises a program that fails, saves it, and throws what is to be reported.
 [[noreturn]] void report_failure(const Cosim& cosim, const CosimOptions& options, const RandomProgram& program,
                                  const std::string& report, const std::string& again, bool is_difference) {
   std::string text = report;
-  if (options.shrink) {
+  if (options.minimise) {
     Progress progress(false);
-    ShrinkOptions shrink;
-    shrink.progress = [&progress](size_t instructions, uint64_t runs) {
-      if (progress.due()) progress.show(fmt::format("shrinking: {} instructions after {} runs", instructions, runs));
+    MinimiseOptions minimise;
+    minimise.progress = [&progress](size_t instructions, uint64_t runs) {
+      if (progress.due()) progress.show(fmt::format("minimising: {} instructions after {} runs", instructions, runs));
     };
     SavedProgram saved;
     saved.configuration = cosim.configuration();
     const std::string wanted = subject(report);
     const auto fails = [&](const RandomProgram& shorter) { return subject(cosim.failure(shorter)) == wanted; };
-    saved.program = shrink_program(cosim.configuration(), program, fails, shrink);
+    saved.program = minimise_program(cosim.configuration(), program, fails, minimise);
     text = cosim.failure(saved.program, true);
     saved.note = text.substr(0, text.find('\n'));
-    text += fmt::format("\nshrunk from {} to {} instructions", program.program.code.size(),
+    text += fmt::format("\nminimised from {} to {} instructions", program.program.code.size(),
                         saved.program.program.code.size());
     // The difference is what counts, saved or not.
     try {

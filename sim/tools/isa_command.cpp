@@ -2,13 +2,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
-#include <utility>
 
-#include "cli/text_file.hpp"
-#include "config/reference.hpp"
-#include "files/output_files.hpp"
-#include "isa/input_error.hpp"
+#include "config/derived_files.hpp"
 #include "isa/reference.hpp"
 #include "tools/commands.hpp"
 
@@ -23,16 +18,7 @@ int isa_command(IsaFormat format) {
 }
 
 int isa_write_command() {
-  if (!std::filesystem::exists("cpp_model/isa/isa.hpp"))
-    throw InputError("there is no cpp_model/isa/isa.hpp here: run raypool isa --write in the root of the checkout");
-  std::vector<GeneratedFile> files = generated_files();
-  for (GeneratedFile& file : generated_parameter_files()) files.push_back(std::move(file));
-  for (const GeneratedFile& file : files) {
-    // What is right keeps its time stamp.
-    if (std::filesystem::exists(file.path) && read_text(file.path) == file.text) continue;
-    write_file(file.path, file.text);
-    fmt::print("wrote {}\n", file.path);
-  }
+  for (const std::string& path : write_derived_files(".")) fmt::print("wrote {}\n", path);
   return 0;
 }
 

@@ -36,8 +36,8 @@ CLI::App* MachineCommands::add(const char* group, const std::string& name, const
 void MachineCommands::add_compare_command() {
   CLI::App* compare_app =
       add(kSimulate, "compare", "compare two reports of sim: what differs in the set-up, and its effect");
-  compare_app->add_option("a", compare_.a, "report.json, or the folder it is in")->required();
-  compare_app->add_option("b", compare_.b, "the same of the other run")->required();
+  compare_app->add_option("a", compare_.a, "report.json of a run, or the folder it is in")->required();
+  compare_app->add_option("b", compare_.b, "report.json of the other run, or the folder it is in")->required();
   compare_app
       ->add_option("--synthesis", compare_.synthesis,
                    "for the area: report of make synth, or a folder of them (default: synth beside the program)")
@@ -118,7 +118,7 @@ void MachineCommands::add_cosim_command() {
   cosim_app->add_flag("--unchecked", cosim_.unchecked, "run the saved program even if it breaks the rules")
       ->group("Programs")
       ->needs(replay);
-  cosim_app->add_flag("!--no-shrink", cosim_.shrink, "leave a program that fails as it is")->group("Programs");
+  cosim_app->add_flag("!--no-minimise", cosim_.minimise, "leave a program that fails as it is")->group("Programs");
   add_cosim_output(*cosim_app, replay);
   cosim_app->callback([this] { code_ = cosim_command(cosim_); });
 }
@@ -127,7 +127,7 @@ void MachineCommands::add_cosim_output(CLI::App& cosim_app, CLI::Option* replay)
   const auto file = [&cosim_app](const char* name, auto& value, const char* type, const char* what) {
     return cosim_app.add_option(name, value, what)->type_name(type)->group(option_group::kOutput);
   };
-  file("--save", cosim_.save, "FOLDER", "for the shrunk program")->capture_default_str();
+  file("--save", cosim_.save, "FOLDER", "for the minimised program")->capture_default_str();
   file("--coverage", cosim_.coverage, "FILE", "what was covered, JSON");
   file("--vectors", cosim_.vectors, "FILE", "record every cycle, for tb/icarus");
   cosim_app.add_flag("--machines", cosim_.machines, "print the machines of a run without --config: file and units")

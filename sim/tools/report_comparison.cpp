@@ -1,6 +1,7 @@
 #include "tools/report_comparison.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "config/configuration.hpp"
@@ -210,10 +212,41 @@ Json area(const Report& report, const std::vector<SynthesisReport>& synthesis) {
   return nullptr;
 }
 
+/// What make runs to know the area of a report's units, from the options that the run was given; null where they say
+/// nothing, as in reports that another program has written.
+Json synthesis_command(const Report& report) {
+  const auto words = report.json.find("command");
+  if (words == report.json.end() || !words->is_array() || words->empty()) return nullptr;
+  std::string config = "8w8c";
+  std::vector<std::string> set;
+  for (size_t i = 0; i < words->size(); ++i) {
+    if (!(*words)[i].is_string()) return nullptr;
+    std::string option = (*words)[i].get<std::string>(), value;
+    if (option != "-c" && option.rfind("--config", 0) != 0 && option.rfind("--set", 0) != 0) continue;
+    if (const size_t equals = option.find('='); equals != std::string::npos) {
+      value = option.substr(equals + 1);
+      option.resize(equals);
+    } else if (i + 1 < words->size() && (*words)[i + 1].is_string()) {
+      value = (*words)[++i].get<std::string>();
+    }
+    if (option == "--config" || option == "-c") config = value;
+    if (option != "--set") continue;
+    // What is around the units is not part of their area.
+    std::istringstream fields(value);
+    for (std::string field; fields >> field;)
+      if (field.rfind("chip.", 0) != 0 && field.rfind("name=", 0) != 0) set.push_back(field);
+  }
+  const std::string fields = set.empty() ? "" : fmt::format(" SET=\"{}\"", fmt::join(set, " "));
+  return fmt::format("make synth CONFIG={}{}", config, fields);
+}
+
 }  // namespace
 
 Report load_report(const std::string& path) {
-  if (path.empty()) throw InputError("compare takes two reports of raypool sim, or the folders that they are in");
+  if (path.empty())
+    throw InputError(
+        "compare takes two reports of raypool sim, or the folders that they are in: raypool compare A B, or make "
+        "compare A=FOLDER B=FOLDER");
   std::error_code none;
   Report report{fs::is_directory(path, none) ? (fs::path(path) / "report.json").string() : path, {}};
   report.json = read_json(report.path, "report");
@@ -244,7 +277,8 @@ Json compare_reports(const Report& a, const Report& b, const std::vector<std::st
           {"estimates", {{"a", estimate_of(a)}, {"b", estimate_of(b)}}},
           {"picture", compare_pictures(a, b, map)},
           {"criterion", {{"off_by", kOffByMore}, {"most_off", kMostOff}}},
-          {"area", {{"a", area(a, known)}, {"b", area(b, known)}}}};
+          {"area", {{"a", area(a, known)}, {"b", area(b, known)}}},
+          {"synthesis", {{"a", synthesis_command(a)}, {"b", synthesis_command(b)}}}};
 }
 
 }  // namespace raypool

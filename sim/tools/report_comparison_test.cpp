@@ -259,6 +259,26 @@ TEST(ReportComparison, TakesTheAreaOfTheSameVerilog) {
   EXPECT_THROW(compare_reports(a, b, {folder.path("a/report.json")}), InputError) << "no report of synthesis";
 }
 
+TEST(ReportComparison, SaysWhatFindsAnAreaThatIsNotKnown) {
+  const Folder folder;
+  const auto found = [&](const Json& command) {
+    Json report = report_of(load_configuration("8w8c"), 1000, 0.5);
+    report["command"] = command;
+    folder.write("a/report.json", report.dump());
+    const std::string table =
+        comparison_table(compare_reports(load_report(folder.path("a")), load_report(folder.path("a")), {}));
+    const size_t begin = table.find("area A");
+    return table.substr(begin, table.find('\n', begin) - begin);
+  };
+  EXPECT_EQ(found({"raypool", "sim"}), "area A    not known; `make synth CONFIG=8w8c` finds it");
+  EXPECT_EQ(found({"raypool", "sim", "--config=4w4c", "--set=data_cache.bytes=2048 chip.ray_pool.size=64", "--size",
+                   "8x8", "--set", "warps=2"}),
+            "area A    not known; `make synth CONFIG=4w4c SET=\"data_cache.bytes=2048 warps=2\"` finds it");
+  EXPECT_EQ(found({"raypool", "sim", "--config", "mine.json"}),
+            "area A    not known; `make synth CONFIG=mine.json` finds it");
+  EXPECT_EQ(found(nullptr), "area A    not known; `make synth CONFIG=...` finds it");
+}
+
 TEST(ReportComparison, AMalformedReportIsOneSentence) {
   const Folder folder;
   EXPECT_EQ(
@@ -272,7 +292,9 @@ TEST(ReportComparison, AMalformedReportIsOneSentence) {
   cut["units"] = "two";
   EXPECT_NE(error_of(folder.write("cut.json", cut.dump())).find("it has no 'units'"), std::string::npos);
   EXPECT_NE(error_of(folder.path("none")).find("none"), std::string::npos);
-  EXPECT_EQ(error_of(""), "compare takes two reports of raypool sim, or the folders that they are in");
+  EXPECT_EQ(error_of(""),
+            "compare takes two reports of raypool sim, or the folders that they are in: raypool compare A B, or make "
+            "compare A=FOLDER B=FOLDER");
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ int referee_command(const RefereeCommandOptions& options, const std::function<re
   Progress progress(options.quiet);
   referee::RefereeOptions match;
   match.threads = threads_or_all(options.threads);
-  match.shrinks = options.smallest;
+  match.minimises = options.smallest;
   match.progress = [&](double share) {
     if (progress.due()) progress.show(fmt::format("  {:.0f}% of the cases", 100 * share));
   };

@@ -21,7 +21,7 @@ class Contender {
   Contender& operator=(const Contender&) = delete;
   virtual ~Contender() = default;
 
-  /// False: only the cases of the corpus itself, so that none can be shrunk.
+  /// False: only the cases of the corpus itself, so that none can be minimised.
   virtual bool answers_any() const { return true; }
   /// One for each answer.
   virtual std::vector<std::string> names() const = 0;

@@ -9,7 +9,7 @@
 #include "bits.hpp"
 #include "referee/corpus.hpp"
 #include "referee/hardware.hpp"
-#include "referee/shrink.hpp"
+#include "referee/minimise.hpp"
 #include "referee/table.hpp"
 
 namespace raypool::referee {
@@ -109,7 +109,7 @@ HitAnswer with_a_wide_tie(const HitCase& hit_case) {
   return best;
 }
 
-/// The first case that a bug spoils, which must come among the first 1000; shrunk, it still does.
+/// The first case that a bug spoils, which must come among the first 1000; minimised, it still does.
 void expect_found(HitAnswer (*bug)(const HitCase&), size_t most_triangles) {
   const auto spoilt = [&](const HitCase& hit_case) {
     const Certificate certificate = certify(hit_case);
@@ -119,7 +119,7 @@ void expect_found(HitAnswer (*bug)(const HitCase&), size_t most_triangles) {
   uint64_t number = 0;
   while (number < 1000 && !spoilt(hard_case(1, number))) ++number;
   ASSERT_LT(number, 1000u);
-  const HitCase found = hard_case(1, number), smallest = shrink(found, spoilt);
+  const HitCase found = hard_case(1, number), smallest = minimise(found, spoilt);
   EXPECT_TRUE(spoilt(smallest));
   EXPECT_FALSE(size_of(found) < size_of(smallest));
   EXPECT_LE(smallest.triangles.size(), most_triangles) << text_of(smallest);

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <thread>
 
-#include "referee/shrink.hpp"
+#include "referee/minimise.hpp"
 
 namespace raypool::referee {
 namespace {
@@ -125,21 +125,21 @@ void set_times(Row& row, std::vector<float>& errors) {
 }
 
 /// Reduces the smallest cases of the rows of a contender further.
-class RowShrinker {
+class RowMinimiser {
  public:
-  RowShrinker(Contender& contender, Row* rows)
+  RowMinimiser(Contender& contender, Row* rows)
       : contender_(contender), rows_(rows), answers_(contender.names().size()) {}
 
   void run() {
     for (size_t i = 0; i < answers_.size(); ++i) {
       for (const Fault fault : kAllFaults) {
-        if (rows_[i].of(fault).count != 0) shrink_one(i, fault);
+        if (rows_[i].of(fault).count != 0) minimise_one(i, fault);
       }
     }
   }
 
  private:
-  void shrink_one(size_t i, Fault fault) {
+  void minimise_one(size_t i, Fault fault) {
     const auto spoils = [&](const HitCase& hit_case) {
       contender_.answer(hit_case, answers_.data());
       return answers_[i] && judge(hit_case, certify(hit_case), *answers_[i]).has(fault);
@@ -148,7 +148,7 @@ class RowShrinker {
     // Widths that go wrong alike have the same smallest case.
     const Failing* const before = i > 0 ? &rows_[i - 1].of(fault) : nullptr;
     const bool alike = before != nullptr && before->count == failing.count && spoils(before->smallest);
-    failing.smallest = alike ? before->smallest : shrink(failing.smallest, spoils);
+    failing.smallest = alike ? before->smallest : minimise(failing.smallest, spoils);
     contender_.answer(failing.smallest, answers_.data());
     failing.answer = *answers_[i];
   }
@@ -194,7 +194,7 @@ std::vector<Row> hold_match(const CaseSource& cases, const std::function<Contend
   }
   Row* first = rows.data();
   for (const auto& each : contenders) {
-    if (options.shrinks && each->answers_any()) RowShrinker(*each, first).run();
+    if (options.minimises && each->answers_any()) RowMinimiser(*each, first).run();
     first += each->names().size();
   }
   return rows;

@@ -13,7 +13,7 @@ namespace raypool::referee {
 /// The smallest case of a fault that was found.
 struct Failing {
   uint64_t count = 0;
-  HitCase smallest;  ///< of those as drawn, or shrunk
+  HitCase smallest;  ///< of those as drawn, or minimised
   HitAnswer answer;  ///< to it
 };
 
@@ -38,11 +38,11 @@ struct CaseSource {
 
 struct RefereeOptions {
   uint32_t threads = 1;
-  bool shrinks = true;                   ///< the smallest case of each fault, if its contender still answers
+  bool minimises = true;                 ///< the smallest case of each fault, if its contender still answers
   std::function<void(double)> progress;  ///< share of the cases; may be empty
 };
 
-/// `make` is called once a thread, and once more to shrink.
+/// `make` is called once a thread, and once more to minimise.
 std::vector<Row> hold_match(const CaseSource& cases, const std::function<Contenders()>& make,
                             const RefereeOptions& options);
 

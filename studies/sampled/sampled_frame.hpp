@@ -1,4 +1,4 @@
-// Engine `sampled`: the cycle-exact model on a random sample of a frame's tiles, and what follows for the frame.
+// Engine `sampled`: the cycle-accurate model on a random sample of a frame's tiles, and what follows for the frame.
 //
 // A block of the sample is simulated as it is in the frame, among its neighbours: tiles before it, that fill the chip
 // and its caches, and behind it, so that it does not drain, are simulated too and not counted. What the native renderer

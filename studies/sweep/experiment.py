@@ -7,7 +7,7 @@ import os
 import jsonschema
 
 from . import scenes
-from .errors import SweepError, nearest
+from .errors import SweepError, nearest, nearest_file
 from .raypool import ROOT
 
 MOST_POINTS = 10000
@@ -110,6 +110,9 @@ def read(path):
     try:
         with open(path, encoding="utf-8-sig") as file:
             return json.load(file, object_pairs_hook=once)
+    except FileNotFoundError as error:
+        near = nearest_file(path, [os.path.join(ROOT, "configs", "experiments")])
+        raise SweepError(f"{path}: there is no such experiment{near}") from error
     except OSError as error:
         raise SweepError(f"{path}: cannot be read: {error.strerror}") from error
     except (ValueError, RecursionError) as error:

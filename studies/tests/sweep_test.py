@@ -137,6 +137,20 @@ class Refusals(SweepTest):
         self.assertFalse(self.out.exists())
         return time.monotonic() - begin
 
+    def test_an_experiment_that_is_not_there_names_the_nearest(self):
+        for name, beside, words in (
+            ("chaces.json", (), "did you mean configs/experiments/caches.json?"),
+            ("mnie.json", ("mine.json", "caches.json"), f"{self.folder.name}/mine.json?"),
+            ("xyzzy.json", (), "there is no such experiment\n"),
+        ):
+            for other in beside:
+                (self.folder / other).write_text("{}")
+            done = subprocess.run([sys.executable, "-m", "sweep", str(self.folder / name)], cwd=ROOT, text=True,
+                                  env=self.environment(), capture_output=True, check=False)  # fmt: skip
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+            self.assertIn(f"{name}: there is no such experiment", done.stderr)
+            self.assertIn(words, done.stderr)
+
     def test_form(self):
         self.refuses('{"base": ', "not valid JSON")
         self.refuses('{"product": {"warps": [1]}, "product": {"lanes": [1]}}', "'product' stands twice")

@@ -109,6 +109,7 @@ TEST_P(Inspected, NamesTheFileOfTheSignal) {
 
 // ALU instances stand by type, and there is one of each.
 #define INT_INSTANCE ".gen_alu[3]"
+#define PC_STACK ".gen_warp[0].warp.pc_stack"
 #define MEM_ALU ".gen_alu[2].gen_mem.mem_alu"
 #define RAY_ALU ".gen_alu[6].gen_ray.ray_alu"
 
@@ -118,7 +119,10 @@ const Tamper kTampers[] = {
     {"", "start", "compute/rp_launcher.v", 0},
     {"", "threads", "compute/rp_launcher.v", 0},
     {"", "active", "compute/rp_instruction_buffer.v"},
-    {"", "fetch_pc", "compute/rp_pc_stack.v", 0},
+    {"", "fetch_pc", "compute/rp_instruction_buffer.v", 0},
+    {PC_STACK, "top_q", "compute/rp_pc_stack.v", 0},
+    {PC_STACK, "pc_o", "compute/rp_pc_stack.v"},
+    {PC_STACK, "pc_valid_o", "compute/rp_pc_stack.v", 2},
     {"", "fetch_request", "compute/rp_instruction_buffer.v"},
     {"", "fetch_grant", "compute/rp_fetch_arbiter.v"},
     {"", "lookup_pc", "compute/rp_compute_unit.v"},

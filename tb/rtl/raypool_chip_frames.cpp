@@ -344,7 +344,7 @@ void record(const Case& c, const Machine& machine, const std::string& folder) {
 }
 
 /// The smallest picture, of fewest triangles, of those tried that still fails.
-Case shrunk(Case c, const Machine& machine, const std::string& library) {
+Case minimised(Case c, const Machine& machine, const std::string& library) {
   const auto smaller = [](const Case& from) {
     std::vector<Case> cases;
     for (uint32_t Picture::*size : {&Picture::width, &Picture::height, &Picture::depth}) {
@@ -478,7 +478,7 @@ int run(const Options& options) {
           "{}, {} units, frame {}: {}\n{}\nthe smallest that fails: {}\n"
           "again with: {} --seed {} --frames {} --machine {} --frame {}\n",
           machine.configuration.name, machine.units, frame, described(c, machine), failure,
-          described(shrunk(c, machine, library), machine), options.program, options.seed, options.frames, number,
+          described(minimised(c, machine, library), machine), options.program, options.seed, options.frames, number,
           frame);
     }
     fmt::print("{}, {} units: {} frames, {} cycles, {} rays, {}; built in {:.0f} s, ran {:.0f} s\n",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The golden model as a device: cycle-exact compute units behind the arbiters of the multiprocessor.
+// The golden model as a device: cycle-accurate compute units behind the arbiters of the multiprocessor.
 #pragma once
 
 #include <memory>

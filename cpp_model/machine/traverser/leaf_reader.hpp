@@ -98,7 +98,7 @@ class LeafReader {
     due.valid = false;
     if (inputs.taken != 0) {
       const LineWant& taken = offers_.wants()[inputs.taken >> 1];
-      if (!taken.nobody) {
+      if (!taken.prefetch) {
         due = {true, {taken.line, static_cast<uint32_t>(pending_[taken.slot].last_word() / 16)}};
         ++held_;
       }
@@ -107,7 +107,7 @@ class LeafReader {
     take_line(leaves, inputs.triangle_taken);
     if (inputs.given != nullptr) come(cycle, *inputs.given);
     wants_ = offers_.wants();
-    for (LineWant& want : wants_) want.valid &= room() | want.nobody;
+    for (LineWant& want : wants_) want.valid &= room() | want.prefetch;
   }
   /// Something happens in this cycle, whatever comes.
   bool goes_on(uint64_t cycle) const {

@@ -8,9 +8,9 @@
 
 namespace raypool {
 
-/// For the ray of a slot, or (`nobody`) a prefetch: it will be wanted.
+/// For the ray of a slot, or (`prefetch`) for none: it will be wanted.
 struct LineWant {
-  bool valid = false, nobody = false;
+  bool valid = false, prefetch = false;
   uint8_t slot = 0;
   uint32_t line = 0;
 };

@@ -231,7 +231,7 @@ class TreeBanks {
       looking_ |= 1u << bank;
       TreeCache::Lookup& lookup = lookups_[bank];
       inputs_[bank].lookup = &lookup;
-      if (want.nobody) continue;
+      if (want.prefetch) continue;
       work_.shared += lookup.lanes != 0 ? 1 : 0;
       lookup.lanes |= 1u << lane;
       lookup.slots[lane] = want.slot;

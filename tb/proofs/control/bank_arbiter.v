@@ -32,7 +32,7 @@ module check #(parameter LANES = 3, BANKS = 2) (
   wire [BANKS*LANES-1:0] lanes, slots;
   rp_bank_arbiter #(.LANES(LANES), .BANKS(BANKS), .LINE_BITS(3), .SLOT_BITS(1)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .want_valid_i(valid_i), .want_line_i(lines_i), .want_slot_i(slots_i),
-    .want_nobody_i(prefetch_i), .silent_i(silent_i), .taken_o(taken), .valid_o(looks), .ready_i(ready_i),
+    .want_prefetch_i(prefetch_i), .silent_i(silent_i), .taken_o(taken), .valid_o(looks), .ready_i(ready_i),
     .line_o(looked), .lanes_o(lanes), .slots_o(slots));
 
   // Anybody's want that stays the first one: what holds for any lane holds for all.

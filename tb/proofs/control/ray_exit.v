@@ -26,7 +26,7 @@
 `default_nettype none
 module rp_leaf_reader #(parameter SLOTS = 2, parameter LINE_BITS = 26, parameter SLOT_BITS = 1) (
   input wire clk_i, rst_ni, input wire [1:0] start_i, input wire [2*SLOT_BITS-1:0] start_slot_i,
-  input wire [61:0] start_leaf_i, output wire [1:0] want_o, want_nobody_o, output wire [2*LINE_BITS-1:0] want_line_o,
+  input wire [61:0] start_leaf_i, output wire [1:0] want_o, want_prefetch_o, output wire [2*LINE_BITS-1:0] want_line_o,
   output wire [2*SLOT_BITS-1:0] want_slot_o, input wire [1:0] taken_i, output wire room_o, input wire waited_i, given_i,
   input wire [SLOT_BITS-1:0] given_slot_i, input wire [511:0] given_data_i, output wire load_o,
   output wire [SLOT_BITS-1:0] load_slot_o, output wire triangle_valid_o, input wire triangle_ready_i,

@@ -77,7 +77,7 @@ class LaneCache {
     }
     for (uint32_t i = 0; i < wants.size() && turn.taken == 0; ++i)
       if (wants[i].valid && !one_of(traffic.leave_lookup)) turn.taken = static_cast<uint8_t>(1u << i);
-    if (turn.taken == 0 || wants[turn.taken >> 1].nobody) return turn;
+    if (turn.taken == 0 || wants[turn.taken >> 1].prefetch) return turn;
     const LineWant& want = wants[turn.taken >> 1];
     if (one_of(traffic.miss)) {
       ++seen.misses;
@@ -257,7 +257,7 @@ class LaneBench {
   static LaneRay no_ray() { return {false, false, BoxRay({0, 0, 0}, {0, 0, 0}, 0, int{P::kBits}), {}, {1, 0}}; }
 
   void visits(const LineWants& wants, const LaneCache::Turn& turn, uint32_t kind) {
-    if (turn.taken == 0 || wants[turn.taken >> 1].nobody) return;
+    if (turn.taken == 0 || wants[turn.taken >> 1].prefetch) return;
     const LineWant& want = wants[turn.taken >> 1];
     Tracing& ray = tracing_[want.slot];
     ASSERT_NE(ray.asked, nullptr) << "cycle " << seen.cycles;
@@ -356,8 +356,8 @@ class LaneBench {
       ASSERT_EQ(valid >> i & 1, wants[i].valid) << "cycle " << seen.cycles;
       if (!wants[i].valid) continue;
       ASSERT_EQ(get_bits(lines, i * kLineBits, kLineBits), wants[i].line) << "cycle " << seen.cycles;
-      ASSERT_EQ(prefetch >> i & 1, wants[i].nobody) << "cycle " << seen.cycles;
-      if (wants[i].nobody) continue;
+      ASSERT_EQ(prefetch >> i & 1, wants[i].prefetch) << "cycle " << seen.cycles;
+      if (wants[i].prefetch) continue;
       ASSERT_EQ(get_bits(of, i * P::slot_bits(), P::slot_bits()), wants[i].slot) << "cycle " << seen.cycles;
     }
   }
@@ -370,7 +370,7 @@ class LaneBench {
       ASSERT_EQ(u_.slot_o, lane_.slot()) << "cycle " << seen.cycles;
     }
     ASSERT_NO_FATAL_FAILURE(compare_wants(wants_nodes(), u_.node_want_o, 0, u_.node_want_line_o, u_.node_want_slot_o));
-    ASSERT_NO_FATAL_FAILURE(compare_wants(lane_.leaf_wants(), u_.leaf_want_o, u_.leaf_want_nobody_o,
+    ASSERT_NO_FATAL_FAILURE(compare_wants(lane_.leaf_wants(), u_.leaf_want_o, u_.leaf_want_prefetch_o,
                                           u_.leaf_want_line_o, u_.leaf_want_slot_o));
     ASSERT_EQ(u_.leaf_room_o, lane_.leaf_room()) << "cycle " << seen.cycles;
     ASSERT_EQ(u_.request_valid_o, lane_.request_valid()) << "cycle " << seen.cycles;

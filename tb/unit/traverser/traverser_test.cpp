@@ -222,7 +222,7 @@ TYPED_TEST(TraverserTest, RandomTrees) {
     test.what.seed = of_bench;
     test.what.traffic = traffic;
     run_case(bench, test.what);
-    if (testing::Test::HasFailure()) shrink_and_report<TypeParam>(test.what, "*RandomTrees");
+    if (testing::Test::HasFailure()) minimise_and_report<TypeParam>(test.what, "*RandomTrees");
     ASSERT_FALSE(testing::Test::HasFailure())
         << "tree of seed " << seed << ": RAYPOOL_SEED=" << seed << " RAYPOOL_TREES=1 draws it alone";
     rays += bench.seen.rays;
@@ -268,9 +268,9 @@ TYPED_TEST(TraverserTest, FailingCasesAreMinimised) {
   const uint32_t word = as_bits(test.what.tree.triangle(ray->walk.hit.place).corners[0][0]);
   ASSERT_FALSE(wrong_with<TypeParam>(test.what));
   ASSERT_TRUE(wrong_with<TypeParam>(test.what, word));
-  TreeShrinker shrinker(test.what,
-                        [word](const TreeCase& cut) { return wrong_with<TypeParam>(cut, word).has_value(); });
-  const TreeCase small = case_of(to_json<TypeParam>(shrinker.run()));
+  TreeMinimiser minimiser(test.what,
+                          [word](const TreeCase& cut) { return wrong_with<TypeParam>(cut, word).has_value(); });
+  const TreeCase small = case_of(to_json<TypeParam>(minimiser.run()));
   EXPECT_TRUE(wrong_with<TypeParam>(small, word));
   EXPECT_FALSE(wrong_with<TypeParam>(small));
   EXPECT_EQ(size_of(small), "1 rays, 0 nodes, 1 triangles");
@@ -301,7 +301,7 @@ TYPED_TEST(TraverserTest, RandomGarbage) {
     test.what.stacks = stacks;
     test.what.is_tree = false;
     run_case(bench, test.what);
-    if (testing::Test::HasFailure()) shrink_and_report<TypeParam>(test.what, "*RandomTrees");
+    if (testing::Test::HasFailure()) minimise_and_report<TypeParam>(test.what, "*RandomTrees");
     ASSERT_FALSE(testing::Test::HasFailure())
         << "garbage of seed " << seed << ": RAYPOOL_SEED=" << seed << " RAYPOOL_TREES=1 draws it alone";
     rays += bench.seen.rays;

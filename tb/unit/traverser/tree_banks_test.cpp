@@ -118,7 +118,7 @@ class Bench {
     for (const auto& [slot, line] : wanted_) free_[slot.first].push_back(slot.second);
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
       for (LineWant& want : wants_[lane]) {
-        if (want.valid && !want.nobody) free_[lane].push_back(want.slot);
+        if (want.valid && !want.prefetch) free_[lane].push_back(want.slot);
         want.valid = false;
       }
     }
@@ -205,11 +205,11 @@ class Bench {
         const uint32_t at = 2 * lane + i;
         const auto noise = static_cast<uint32_t>(bench_.random());
         set_bits(u_.want_valid_i, at, 1, want.valid);
-        set_bits(u_.want_nobody_i, at, 1, want.valid ? want.nobody : noise >> 31);
+        set_bits(u_.want_prefetch_i, at, 1, want.valid ? want.prefetch : noise >> 31);
         // Invalid wants of a line that others want must not be taken for it.
         const uint32_t line = want.valid ? want.line : (noise & 1) != 0 ? offered_[noise % kLanes][i].line : noise;
         set_bits(u_.want_line_i, at * P::kLineBits, P::kLineBits, line);
-        set_bits(u_.want_slot_i, at * kSlotBits, kSlotBits, want.valid && !want.nobody ? want.slot : noise >> 9);
+        set_bits(u_.want_slot_i, at * kSlotBits, kSlotBits, want.valid && !want.prefetch ? want.slot : noise >> 9);
       }
     }
     u_.waited_ready_i = room;
@@ -267,7 +267,7 @@ class Bench {
     ASSERT_TRUE(offered_[lane][taken >> 1].valid) << "cycle " << cycle_;
     seconds += taken >> 1;
     LineWant& want = wants_[lane][taken >> 1];
-    if (!want.nobody) wanted_[{lane, want.slot}] = want.line;
+    if (!want.prefetch) wanted_[{lane, want.slot}] = want.line;
     want.valid = false;
   }
 

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "cosim/shrink_blocks.hpp"
+#include "cosim/minimise_blocks.hpp"
 #include "unit/traverser/traverser_bench.hpp"
 
 namespace raypool::bench {
@@ -117,13 +117,13 @@ inline std::string size_of(const TreeCase& what) {
 }
 
 /// Cuts a case down as long as it `fails`.
-class TreeShrinker {
+class TreeMinimiser {
  public:
   using Fails = std::function<bool(const TreeCase&)>;
   static constexpr uint64_t kRuns = 1000;
   static constexpr double kSeconds = 60;
 
-  TreeShrinker(TreeCase what, Fails fails) : best_(std::move(what)), fails_(std::move(fails)) {}
+  TreeMinimiser(TreeCase what, Fails fails) : best_(std::move(what)), fails_(std::move(fails)) {}
 
   TreeCase run() {
     for (bool again = true; again && !ends();) {
@@ -158,7 +158,7 @@ class TreeShrinker {
       for (size_t i = 0; i < what.rays.size(); ++i) what.rays[i][word::kColor] = static_cast<uint32_t>(i);
       return !what.rays.empty() && attempt(std::move(what));
     };
-    return shrink_blocks([this] { return best_.rays.size(); }, without, [this] { return ends(); });
+    return minimise_blocks([this] { return best_.rays.size(); }, without, [this] { return ends(); });
   }
 
   static void put(LaneTree& tree, uint32_t number, const TreeNode& node) {
@@ -284,17 +284,17 @@ inline TreeCase case_of(const nlohmann::json& json) {
 
 /// Minimises a failing case and writes it to a file that RAYPOOL_CASE runs again.
 template <typename P>
-void shrink_and_report(const TreeCase& what, const std::string& filter) {
+void minimise_and_report(const TreeCase& what, const std::string& filter) {
   const std::optional<Wrong> wrong = wrong_with<P>(what);
   if (!wrong) return;
-  TreeShrinker shrinker(what, [&](const TreeCase& cut) {
+  TreeMinimiser minimiser(what, [&](const TreeCase& cut) {
     const std::optional<Wrong> now = wrong_with<P>(cut);
     return now && now->where == wrong->where;
   });
-  const TreeCase small = shrinker.run();
+  const TreeCase small = minimiser.run();
   const std::string path = testing::TempDir() + "traverser_case_" + std::to_string(P::sizes().lanes) + "_lanes.json";
   std::ofstream(path) << to_json<P>(small).dump(1) << "\n";
-  std::cout << "shrunk in " << shrinker.runs() << " runs from " << size_of(what) << " to " << size_of(small)
+  std::cout << "minimised in " << minimiser.runs() << " runs from " << size_of(what) << " to " << size_of(small)
             << "; run it again: RAYPOOL_CASE=" << path << " traverser_test --gtest_filter=" << filter << "\n"
             << wrong_with<P>(small)->what << "\n";
 }

@@ -1,4 +1,4 @@
-#include "referee/shrink.hpp"
+#include "referee/minimise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -82,9 +82,9 @@ std::vector<float> simpler_than(float x) {
   return candidates;
 }
 
-class Shrinker {
+class Minimiser {
  public:
-  Shrinker(const HitCase& failing, const std::function<bool(const HitCase&)>& fails, uint32_t trials)
+  Minimiser(const HitCase& failing, const std::function<bool(const HitCase&)>& fails, uint32_t trials)
       : best_(failing), size_(size_of(failing)), fails_(fails), left_(trials) {}
 
   HitCase run() {
@@ -186,8 +186,8 @@ CaseSize size_of(const HitCase& hit_case) {
   return size;
 }
 
-HitCase shrink(const HitCase& failing, const std::function<bool(const HitCase&)>& fails, uint32_t trials) {
-  return Shrinker(failing, fails, trials).run();
+HitCase minimise(const HitCase& failing, const std::function<bool(const HitCase&)>& fails, uint32_t trials) {
+  return Minimiser(failing, fails, trials).run();
 }
 
 }  // namespace raypool::referee

@@ -1,18 +1,19 @@
-#include "cosim/shrink.hpp"
+#include "cosim/minimise.hpp"
 
 #include <algorithm>
 #include <chrono>
 
+#include "cosim/minimise_blocks.hpp"
 #include "cosim/program_check.hpp"
-#include "cosim/shrink_blocks.hpp"
 #include "isa/encoding.hpp"
 
 namespace raypool {
 namespace {
 
-class Shrinker {
+class Minimiser {
  public:
-  Shrinker(const Configuration& configuration, RandomProgram program, const Fails& fails, const ShrinkOptions& options)
+  Minimiser(const Configuration& configuration, RandomProgram program, const Fails& fails,
+            const MinimiseOptions& options)
       : configuration_(configuration), best_(std::move(program)), fails_(fails), options_(options) {
     uint64_t executed = 0;
     check_program(configuration_, best_, ~uint64_t{0}, &executed);
@@ -61,7 +62,7 @@ class Shrinker {
   }
 
   bool instructions() {
-    return shrink_blocks(
+    return minimise_blocks(
         [this] { return best_.program.code.size(); },
         [this](size_t from, size_t count) { return attempt(without_instructions(best_, from, count)); },
         [this] { return exhausted(); });
@@ -123,7 +124,7 @@ class Shrinker {
   const Configuration& configuration_;
   RandomProgram best_;
   const Fails& fails_;
-  ShrinkOptions options_;
+  MinimiseOptions options_;
   uint64_t step_limit_ = 0;
   uint64_t runs_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -167,9 +168,9 @@ RandomProgram without_instructions(const RandomProgram& program, size_t from, si
   return result;
 }
 
-RandomProgram shrink_program(const Configuration& configuration, const RandomProgram& program, const Fails& fails,
-                             const ShrinkOptions& options) {
-  return Shrinker(configuration, program, fails, options).run();
+RandomProgram minimise_program(const Configuration& configuration, const RandomProgram& program, const Fails& fails,
+                               const MinimiseOptions& options) {
+  return Minimiser(configuration, program, fails, options).run();
 }
 
 }  // namespace raypool

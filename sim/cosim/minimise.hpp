@@ -11,7 +11,7 @@ namespace raypool {
 /// Runs a program; true if it fails.
 using Fails = std::function<bool(const RandomProgram&)>;
 
-struct ShrinkOptions {
+struct MinimiseOptions {
   uint64_t attempts = 4000;                                          ///< runs at most
   double seconds = 120;                                              ///< and time
   std::function<void(size_t instructions, uint64_t runs)> progress;  ///< called after each run, may be empty
@@ -20,8 +20,8 @@ struct ShrinkOptions {
 /// `program` must fail. The result fails too, and check_program() has nothing against it (nor is it asked to stop
 /// earlier than `program` does): every attempt is checked before it is run. Delta debugging: blocks of half the code,
 /// then of a quarter, and so on; jumps follow their targets.
-RandomProgram shrink_program(const Configuration& configuration, const RandomProgram& program, const Fails& fails,
-                             const ShrinkOptions& options = {});
+RandomProgram minimise_program(const Configuration& configuration, const RandomProgram& program, const Fails& fails,
+                               const MinimiseOptions& options = {});
 
 /// The program without instructions from .. from+count-1: targets, ends and entries follow; one that was
 /// left out becomes the next that stays.

@@ -20,6 +20,6 @@ struct CaseSize {
 CaseSize size_of(const HitCase& hit_case);
 
 /// Of `failing`, for which `fails` must hold: a reduced case for which it does too, after at most so many trials.
-HitCase shrink(const HitCase& failing, const std::function<bool(const HitCase&)>& fails, uint32_t trials = 4000);
+HitCase minimise(const HitCase& failing, const std::function<bool(const HitCase&)>& fails, uint32_t trials = 4000);
 
 }  // namespace raypool::referee

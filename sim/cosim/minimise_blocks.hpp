@@ -10,7 +10,7 @@ namespace raypool {
 /// `size()`: of what is left. `without(from, count)`: tries it; true if they are gone. `ends()`: no more is tried.
 /// True if anything is gone.
 template <typename Size, typename Without, typename Ends>
-bool shrink_blocks(Size size, Without without, Ends ends) {
+bool minimise_blocks(Size size, Without without, Ends ends) {
   bool any = false;
   for (size_t block = std::max<size_t>(1, size() / 2);; block /= 2) {
     for (size_t from = 0; from < size() && !ends();) {
