@@ -18,7 +18,7 @@ endif
 # here is chosen by the program.
 #: variables of make sim: the frame, and what draws it                      default
 #:   SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply
-#:   SCENES=FOLDER:FOLDER          where SCENE is looked for too               scenes, examples
+#:   SCENES=FOLDER:FOLDER          where SCENE is looked for too               scenes, examples, examples/scenes
 export SCENE ?= room
 #:   SIZE=WxH                      pixels, 1..16384 each
 export SIZE ?= 200x200

@@ -87,7 +87,7 @@ if [ -n "$scene" ] && [[ $scene != cornell && $scene != room ]] && [ ! -e "$scen
     folders=('')
   else
     IFS=: read -ra own <<< "${SCENES:-scenes}"
-    folders+=("${own[@]}" examples)
+    folders+=("${own[@]}" examples examples/scenes)
   fi
   known=()
   [[ $scene == */* ]] || known=(cornell room)

@@ -92,7 +92,7 @@ std::vector<std::string> scene_folders() {
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
   }
-  folders.push_back(data_folder() + "/examples");
+  for (const char* folder : {"/examples", "/examples/scenes"}) folders.push_back(data_folder() + folder);
   return folders;
 }
 
