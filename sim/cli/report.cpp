@@ -32,7 +32,13 @@ Json shaders_json(const RunRecord& record) {
   Json instructions;
   for (const std::string_view name : kRayKernelNames)
     instructions[std::string(name)] = extract_kernel(record.kernels->program, std::string(name)).code.size();
-  return {{"folder", record.shaders}, {"samples", record.samples}, {"instructions", instructions}};
+  Json spilled;
+  for (size_t i = 0; i < kRayKernels; ++i) {
+    const kernel::SpillCounts& counts = record.kernels->counts[i].spilled;
+    spilled[std::string(kRayKernelNames[i])] = {{"to_words", counts.to_words}, {"to_memory", counts.to_memory}};
+  }
+  return {
+      {"folder", record.shaders}, {"samples", record.samples}, {"instructions", instructions}, {"spilled", spilled}};
 }
 
 /// A figure that only an engine with a notion of time has.
@@ -251,6 +257,14 @@ std::string shaders_text(const RunRecord& record) {
     text += fmt::format("{} {} {}", name == kRayKernelNames[0] ? "; instructions:" : ",", name,
                         extract_kernel(record.kernels->program, std::string(name)).code.size());
   }
+  // What has found no register.
+  kernel::SpillCounts sum;
+  for (const kernel::CompileCounts& counts : record.kernels->counts) {
+    sum.to_words = std::max(sum.to_words, counts.spilled.to_words);
+    sum.to_memory = std::max(sum.to_memory, counts.spilled.to_memory);
+  }
+  if (sum.to_words + sum.to_memory > 0)
+    text += fmt::format("; spilled: {} values to ray words, {} to memory", sum.to_words, sum.to_memory);
   return text;
 }
 

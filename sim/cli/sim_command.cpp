@@ -176,7 +176,9 @@ bool names_say_all(const SimOptions& options, const Scene& scene, const Configur
   return own_view && is_built_in(configuration);
 }
 
-fs::path default_folder(const SimOptions& options, const Scene& scene, const RunRecord& record, const ImageSize& size) {
+/// `shaders`: folder of the shader set; empty: none.
+fs::path default_folder(const SimOptions& options, const Scene& scene, const RunRecord& record, const ImageSize& size,
+                        const std::string& shaders) {
   const Configuration& configuration = record.configuration;
   std::string name = fs::path(options.scene).stem().string();
   if (options.detail != 1) name += fmt::format("-detail{:g}", options.detail);
@@ -186,7 +188,7 @@ fs::path default_folder(const SimOptions& options, const Scene& scene, const Run
   if (options.boundary == "chip") name += "-chip";
   if (options.hits == "embree") name += "-embree";
   if (options.precision == "double") name += "-double";
-  if (!record.shaders.empty()) name += "-" + name_of_shaders(record.shaders);
+  if (!shaders.empty()) name += "-" + name_of_shaders(shaders);
   if (options.samples > 1) name += fmt::format("-samples{}", options.samples);
   if (!names_say_all(options, scene, configuration)) name += fmt::format("-{:08x}", content_hash(scene, configuration));
   return results_folder() / name;
@@ -546,7 +548,7 @@ int sim_command(const SimOptions& options) {
   std::shared_ptr<const shader::ShaderSet> shaders;
   if (!options.shaders.empty()) {
     shaders = options.shader_source.load(options.shaders);
-    record.shaders = shaders->folder();
+    record.shaders = options.shaders;
   }
   const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look, !options.shaders.empty());
   record.scene = scene.name;
@@ -560,7 +562,9 @@ int sim_command(const SimOptions& options) {
     print_modules(options, engine, record, scene, image);
     return 0;
   }
-  OutputFolder out(options.out.empty() ? default_folder(options, scene, record, size) : fs::path(options.out));
+  OutputFolder out(options.out.empty()
+                       ? default_folder(options, scene, record, size, shaders ? shaders->folder() : std::string())
+                       : fs::path(options.out));
 
   clear_unfinished(out);
   // A run that is stopped leaves its waveform until then.
