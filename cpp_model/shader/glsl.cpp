@@ -103,7 +103,7 @@ std::vector<uint32_t> spirv_of(const std::string& path) {
   std::string compiled = path;
   if (fs::path(path).extension() != ".spv") {
     compiled = scratch.file("compiled.spv");
-    const Finished result = run({"glslangValidator", "-V", "--target-env", "vulkan1.2", "-g", "-I" + fs::path(path).parent_path().string(),
+    const Finished result = run({"glslangValidator", "-V", "--target-env", "vulkan1.2", "-g", "-I" + (fs::path(path).parent_path() / ".").string(),
                                  "-I" + (fs::path(data_folder()) / "shaders").string(), "-o", compiled, path});
     if (result.code != 0) throw InputError(first_error(result.output, path));
   } else {

@@ -26,6 +26,10 @@ void Lowering::begin_variables() {
       if (line.op == spv::Op::OpAccessChain || line.op == spv::Op::OpInBoundsAccessChain)
         roots[line.id] = root(line.operands.at(0));
       if (line.op == spv::Op::OpStore) written_.insert(root(line.operands.at(0)));
+      // modf() and frexp() write their second result.
+      if (line.op == spv::Op::OpExtInst && type_of(line.operands.back()) != 0 &&
+          module_.type(type_of(line.operands.back())).kind == TypeKind::Pointer)
+        written_.insert(root(line.operands.back()));
     }
   }
   const auto declare_all = [&](uint32_t id, uint32_t pointer_type, uint32_t initial) {
