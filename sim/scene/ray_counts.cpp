@@ -22,6 +22,7 @@ void add(RayCounts::Kind& sum, const RayCounts::Kind& part) {
   sum.ended += part.ended;
   sum.weightless += part.weightless;
   sum.futile += part.futile;
+  sum.left_out += part.left_out;
 }
 
 }  // namespace
