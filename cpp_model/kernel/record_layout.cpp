@@ -84,6 +84,11 @@ RecordLayout compact_layout(const std::vector<Function>& kernels) {
 }
 
 void place_words(Function& kernel, const RecordLayout& layout) {
+  const auto lacks = [&](const Op& op) {
+    return is(op, Opcode::Rld) && op.word >= kRayWords && layout.place.at(op.word) == RecordLayout::kAbsent;
+  };
+  // What nobody uses is not needed, and no place of the layout.
+  if (std::any_of(kernel.ops.begin(), kernel.ops.end(), lacks)) remove_dead(kernel);
   kernel.slice_words = static_cast<int>(layout.words);
   for (Op& op : kernel.ops) {
     if (!(is(op, Opcode::Rld) || is(op, Opcode::Rst)) || op.word < kRayWords) continue;

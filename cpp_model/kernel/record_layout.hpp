@@ -16,8 +16,8 @@ namespace raypool::kernel {
 /// read them, then those behind the ray.
 RecordLayout compact_layout(const std::vector<Function>& kernels);
 
-/// A kernel that was recorded with whole intersections then has its words where the layout has them. Throws InputError
-/// for one that the layout lacks.
+/// A kernel that was recorded with whole intersections then has its words where the layout has them, without reads of
+/// absent words whose value nothing uses. Throws InputError for another word that the layout lacks.
 void place_words(Function& kernel, const RecordLayout& layout);
 
 }  // namespace raypool::kernel

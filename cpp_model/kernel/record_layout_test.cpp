@@ -131,6 +131,22 @@ TEST(RecordLayout, NamesKernelsWithTooFewWords) {
   }
 }
 
+TEST(RecordLayout, ForgetsReadsOfAWordThatIsLeftOutWhereNothingUsesThem) {
+  Function kernel = record_kernel("k", [](RecordedKernel& k) {
+    k.ray_in();
+    const Int used = k.int_word(15);
+    [[maybe_unused]] const Int unused = k.int_word(18);
+    set_ray(k, used);
+    k.ray_out();
+  });
+  const RecordLayout layout = compact_layout({kernel});
+  place_words(kernel, layout);
+  std::vector<int> read;
+  for (const Op& op : kernel.ops)
+    if (is(op, Opcode::Rld)) read.push_back(op.word);
+  EXPECT_EQ(read, std::vector<int>{layout.place[15]});
+}
+
 TEST(RecordLayout, LetsNoKernelReadAWordThatIsLeftOut) {
   RecordLayout layout;
   layout.place[19] = RecordLayout::kAbsent;

@@ -197,9 +197,8 @@ def textures(folder):
         wisps = limited((cloud(u, v) - 0.5) * 3.2) * limited(v * 2.5) * 0.32
         return v**1.6 + wisps * (0.4 + 0.6 * v)
 
-    draw(folder + "/sky.png", 256, 128, [(34, 48, 96), (72, 92, 148), (146, 142, 168), (232, 172, 138), (255,
-        206, 140)],
-         96, sky)
+    draw(folder + "/sky.png", 256, 128, [(34, 48, 96), (72, 92, 148), (146, 142, 168), (232, 172, 138),
+                                         (255, 206, 140)], 96, sky)
 
     # Metallic-roughness: green is roughness, blue is metallic.
     scratch = layered(60, 4, 8)
@@ -386,7 +385,7 @@ class Document:
         if target is not None:
             view["target"] = target
         result = {"bufferView": self.part("bufferViews", view), "componentType": code, "count": len(values),
-            "type": kind}
+                  "type": kind}
         if target == 34962 and kind == "VEC3":
             rounded = [struct.unpack("<3f", struct.pack("<3f", *value)) for value in values]
             result["min"] = [min(value[i] for value in rounded) for i in range(components)]
@@ -408,7 +407,10 @@ class Document:
 
     def node(self, name, mesh=None, place=None, rotation=None, scale=None, **more):
         node = {"name": name, **more}
-        digits = lambda numbers: [round(number, 5) for number in numbers]
+
+        def digits(numbers):
+            return [round(number, 5) for number in numbers]
+
         if mesh is not None:
             node["mesh"] = mesh
         if place is not None:
@@ -434,8 +436,7 @@ class Document:
         return info
 
     def material(self, name, color=(1, 1, 1), metallic=0.0, roughness=1.0, texture=None, rough_texture=None,
-        emission=None,
-                 strength=None, emission_texture=None, glass=None, ior=None, **more):
+                 emission=None, strength=None, emission_texture=None, glass=None, ior=None, **more):
         pbr = {"baseColorFactor": [*color, 1.0] if len(color) == 3 else list(color), "metallicFactor": metallic,
                "roughnessFactor": roughness}
         if texture is not None:
@@ -528,18 +529,18 @@ def courtyard(folder):
     water = scene.material("water", (0.80, 0.95, 0.97), roughness=0.0, glass=1.0, ior=1.33)
     flame = scene.material("lantern", (1, 1, 1), emission=(1.0, 0.56, 0.22), strength=24.0)
     sky = scene.material("sky", (0, 0, 0), emission=(1, 1, 1), strength=0.9,
-        emission_texture=scene.texture("sky", 33071))
+                         emission_texture=scene.texture("sky", 33071))
     soil = scene.material("soil", (0.08, 0.06, 0.04))
 
     # Ground and walls.
     scene.node("paving", scene.mesh(Mesh().quad((-6, 0, 8), (12, 0, 0), (0, 0, -13), (5, 5.4)), stone))
     scene.node("field", scene.mesh(Mesh().quad((-40, -0.02, 40), (80, 0, 0), (0, 0, -80)), soil))
-    walls = Mesh().quad((-6, 0.9, -5), (12, 0, 0), (0, 3.3, 0), (4, 1.1)).quad((-6, 0.9, 8), (0, 0, -13), (0,
-        3.3, 0), (4.3, 1.1))
+    walls = Mesh().quad((-6, 0.9, -5), (12, 0, 0), (0, 3.3, 0), (4, 1.1))
+    walls.quad((-6, 0.9, 8), (0, 0, -13), (0, 3.3, 0), (4.3, 1.1))
     walls.quad((6, 0.9, -5), (0, 0, 13), (0, 3.3, 0), (4.3, 1.1))
     scene.node("walls", scene.mesh(walls, plaster))
-    base = Mesh().quad((-6, 0, -4.93), (12, 0, 0), (0, 0.9, 0), (9, 0.7)).quad((-5.93, 0, 8), (0, 0, -13), (0,
-        0.9, 0), (10, 0.7))
+    base = Mesh().quad((-6, 0, -4.93), (12, 0, 0), (0, 0.9, 0), (9, 0.7))
+    base.quad((-5.93, 0, 8), (0, 0, -13), (0, 0.9, 0), (10, 0.7))
     base.quad((5.93, 0, -5), (0, 0, 13), (0, 0.9, 0), (10, 0.7))
     base.quad((-6, 0.9, -4.93), (12, 0, 0), (0, 0, -0.07)).quad((-5.93, 0.9, 8), (0, 0, -13), (-0.07, 0, 0))
     scene.node("base", scene.mesh(base, brick))
@@ -551,8 +552,10 @@ def courtyard(folder):
     column = [(0.24, 0), (0.24, 0.1), (0.24, 0.1), (0.23, 0.13), (0.20, 0.15), (0.19, 0.2), (0.19, 0.2)]
     column += [(0.16 + 0.012 * math.sin(math.pi * i / 8) - 0.004 * i, 0.2 + 2.3 * i / 8) for i in range(9)]
     column += [(0.128, 2.5), (0.16, 2.53), (0.18, 2.58), (0.22, 2.6), (0.22, 2.6), (0.22, 2.7), (0.22, 2.7), (0.0, 2.7)]
-    shade = lambda p, n: scaled((0.82, 0.77, 0.68),
-        0.72 + 0.28 * limited(p[1] / 0.8) - 0.06 * math.sin(23 * p[1] + 3 * p[0]))
+
+    def shade(p, n):
+        return scaled((0.82, 0.77, 0.68), 0.72 + 0.28 * limited(p[1] / 0.8) - 0.06 * math.sin(23 * p[1] + 3 * p[0]))
+
     pillar = scene.mesh(Mesh().lathe(column, 28).colored(shade), marble)
     for i in range(6):
         scene.node(f"column {i}", pillar, (-5 + 2 * i, 0, -3.2), turned((0, 1, 0), 40 * i))
@@ -564,9 +567,12 @@ def courtyard(folder):
     # The fountain.
     basin = [(1.25, 0), (1.25, 0.08), (1.25, 0.08), (1.15, 0.12), (1.12, 0.34), (1.2, 0.42), (1.22, 0.46), (1.2, 0.5),
              (1.12, 0.5), (1.08, 0.46), (1.05, 0.2), (1.0, 0.14), (0.0, 0.14)]
-    veins = lambda p, n: scaled((0.80, 0.79, 0.76),
-        0.86 + 0.14 * math.sin(6 * p[0] + 4 * math.sin(5 * p[2] + 3 * p[1])))
+
+    def veins(p, n):
+        return scaled((0.80, 0.79, 0.76), 0.86 + 0.14 * math.sin(6 * p[0] + 4 * math.sin(5 * p[2] + 3 * p[1])))
+
     scene.node("basin", scene.mesh(Mesh().lathe(basin, 48).colored(veins), marble), (0, 0, 0.2))
+
     def ripple(column, row):
         radius, angle = 1.06 * row / 6, -2 * math.pi * (column % 24) / 24
         slope = -0.12 * math.cos(9 * row / 6)
@@ -586,8 +592,11 @@ def courtyard(folder):
     scene.node("green ball", scene.mesh(small, emerald), (0.72, 0.2, 2.35))
     scene.node("copper ball", scene.mesh(Mesh().ball(0.3, 40), copper), (-1.05, 0.3, 2.25), turned((1, 0, 1), 50))
     scene.node("gold ball", scene.mesh(small, gold), (0.0, 0.2, 2.75))
-    glaze = lambda p, n: add(scaled((0.03, 0.16, 0.34), limited(1.3 - p[1])), scaled((0.75, 0.62, 0.40), limited(
-        0.5 + 2.5 * math.sin(14 * p[1] + 1.5 * math.sin(4 * math.atan2(p[2], p[0])))) * 0.5))
+
+    def glaze(p, n):
+        stripes = limited(0.5 + 2.5 * math.sin(14 * p[1] + 1.5 * math.sin(4 * math.atan2(p[2], p[0]))))
+        return add(scaled((0.03, 0.16, 0.34), limited(1.3 - p[1])), scaled((0.75, 0.62, 0.40), stripes * 0.5))
+
     vase = [(0.0, 0.0), (0.16, 0.0), (0.16, 0.0), (0.2, 0.06), (0.28, 0.26), (0.3, 0.44), (0.25, 0.62), (0.15, 0.76),
             (0.11, 0.86), (0.13, 0.95), (0.19, 1.0), (0.17, 1.0), (0.1, 0.92), (0.09, 0.8)]
     scene.node("vase", scene.mesh(Mesh().lathe(vase, 40).colored(glaze), scene.material("glaze", roughness=0.12)),
@@ -595,8 +604,7 @@ def courtyard(folder):
 
     # Two trees in pots, and creepers at the wall.
     pot = [(0.0, 0.0), (0.3, 0.0), (0.3, 0.0), (0.4, 0.5), (0.4, 0.5), (0.45, 0.5), (0.46, 0.6), (0.44, 0.62),
-        (0.4, 0.6),
-           (0.37, 0.52), (0.0, 0.52)]
+           (0.4, 0.6), (0.37, 0.52), (0.0, 0.52)]
     pot_mesh = scene.mesh(Mesh().lathe(pot, 36), clay)
     sprig = scene.mesh(Mesh().grid(1, 2, lambda i, j: (
         ((i - 0.5) * 0.3, 0.15 * j, 0.03 * (j == 1)), unit((i - 0.5, 0.2 * (j - 1), 1.0)), (i, 1 - j / 2))), foliage)
@@ -604,8 +612,8 @@ def courtyard(folder):
         scene.node(f"pot {number}", pot_mesh, (x, 0, z))
         wood = Mesh()
         tips = []
-        trunk = [(0.06 * math.sin(2.2 * i / 6 + number), 0.5 + 0.24 * i,
-            0.05 * math.sin(3.1 * i / 6)) for i in range(7)]
+        trunk = [(0.06 * math.sin(2.2 * i / 6 + number), 0.5 + 0.24 * i, 0.05 * math.sin(3.1 * i / 6))
+                 for i in range(7)]
         wood.tube(trunk, [0.075 - 0.005 * i for i in range(7)], 10)
         for branch in range(13):
             angle, steep = branch * 2.4, 0.5 + 0.6 * chance.random()
@@ -638,7 +646,7 @@ def courtyard(folder):
     for i in range(8):
         angle = math.pi * i / 4
         cage.tube([(0.125 * math.cos(angle), -0.14 + 0.28 * j, 0.125 * math.sin(angle)) for j in range(2)],
-            [0.008] * 2, 5)
+                  [0.008] * 2, 5)
     cage_mesh = scene.mesh(cage, iron)
     chain = scene.mesh(Mesh().tube([(0, 0.3, 0), (0, 0.62, 0)], [0.008] * 2, 5), iron)
     for i, x in enumerate((-4, -2, 0, 2, 4)):
@@ -662,8 +670,8 @@ def cornell(folder):
     shell = Mesh().quad((0, 0, 0), (size, 0, 0), (0, 0, -size)).quad((0, size, -size), (size, 0, 0), (0, 0, size))
     shell.quad((0, 0, -size), (size, 0, 0), (0, size, 0))
     box.node("shell", box.mesh(shell, white))
-    box.node("left", box.mesh(Mesh().quad((0, 0, 0), (0, 0, -size), (0, size, 0)), box.material("red", (0.63,
-        0.06, 0.05))))
+    box.node("left", box.mesh(Mesh().quad((0, 0, 0), (0, 0, -size), (0, size, 0)),
+                              box.material("red", (0.63, 0.06, 0.05))))
     box.node("right", box.mesh(Mesh().quad((size, 0, -size), (0, 0, size), (0, size, 0)),
                                box.material("green", (0.12, 0.45, 0.10))))
     lamp = box.material("lamp", (0.0, 0.0, 0.0), emission=(1.0, 0.80, 0.52), strength=17.0)
@@ -686,9 +694,12 @@ def features(folder):
     panel = Mesh().quad((-0.36, 0.0, 0.0), (0.72, 0, 0), (0, 0.72, 0), (1, 1))
     wide = Mesh().quad((-0.36, 0.0, 0.0), (0.72, 0, 0), (0, 0.72, 0), (3, 3))
     # Its coordinates reach from -0.5 to 1.5, to show what is beyond a texture's edge.
-    beyond = Mesh().grid(1, 1, lambda i, j: ((0.72 * i - 0.36, 0.72 * j, 0.0), (0.0, 0.0, 1.0), (2 * i - 0.5,
-        1.5 - 2 * j)))
-    rainbow = lambda p, n: tuple(0.5 + 0.5 * math.cos(6.28 * (p[1] * 1.2 + shift)) for shift in (0.0, 0.33, 0.67))
+    beyond = Mesh().grid(1, 1, lambda i, j: ((0.72 * i - 0.36, 0.72 * j, 0.0), (0.0, 0.0, 1.0),
+                                             (2 * i - 0.5, 1.5 - 2 * j)))
+
+    def rainbow(p, n):
+        return tuple(0.5 + 0.5 * math.cos(6.28 * (p[1] * 1.2 + shift)) for shift in (0.0, 0.33, 0.67))
+
     colored = Mesh().ball(0.36, 40).colored(rainbow)
     make, texture = scene.material, scene.texture
     rows = [
@@ -708,7 +719,7 @@ def features(folder):
             ("colored glass", ball, make("colored glass", (0.35, 0.60, 0.95), roughness=0.0, glass=1.0)),
             ("half glass", ball, make("half glass", (0.90, 0.45, 0.55), roughness=0.1, glass=0.5)),
             ("alpha cut-out", panel, make("cut-out", texture=texture("leaves", 33071), alphaMode="MASK",
-                doubleSided=True)),
+                                          doubleSided=True)),
             ("alpha blend", panel, make("blend", (0.15, 0.35, 0.75, 0.45), alphaMode="BLEND", doubleSided=True)),
             ("flat normals", Mesh().ball(0.36, 14).flat(), make("flat", (0.50, 0.55, 0.62), roughness=0.6)),
         ],
@@ -719,13 +730,13 @@ def features(folder):
             ("mirrored repeat", beyond, make("mirrored", texture=texture("arrow", 33648))),
             ("nearest filter", panel, make("nearest", texture=texture("patches", nearest=True))),
             ("linear filter", panel, make("linear", texture=texture("patches"))),
-            ("texture transform", panel, make("transform", texture=texture("arrow", scale=[2.0, 2.0],
-                                                                          offset=[0.25, 0.5], rotation=0.6))),
+            ("texture transform", panel, make("transform", texture=texture(
+                "arrow", scale=[2.0, 2.0], offset=[0.25, 0.5], rotation=0.6))),
         ],
         [
             ("emission", ball, make("emission", (0.1, 0.1, 0.1), emission=(0.9, 0.35, 0.12))),
             ("strong emission", Mesh().ball(0.14, 16), make("strong", (0, 0, 0), emission=(0.55, 0.75, 1.0),
-                strength=14.0)),
+                                                            strength=14.0)),
             ("emission texture", block, make("glow", (0.05, 0.05, 0.05), emission=(1, 1, 1), strength=1.5,
                                              emission_texture=texture("glow"))),
             ("texture times color", block, make("tinted", (0.45, 0.75, 0.50), texture=texture("wood"), roughness=0.4)),

@@ -47,6 +47,7 @@ void check_fits(const RunRecord& record, const Scene& scene) {
           scene.name, found, record.configuration.name));
     }
   }
+  record_layout(ray_program(record), record.configuration);
   const Program& program = ray_program(record).program;
   for (const RayKernel kernel : kernels_of(chip, record.depth, record.reflections))
     check_instructions(program, std::string(kRayKernelNames[kernel]), record.configuration);
