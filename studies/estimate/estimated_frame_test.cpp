@@ -16,8 +16,8 @@ namespace {
 constexpr uint32_t kSide = 64;  // pixels
 
 struct Frame : test::RealFrame {
-  Frame(uint32_t warps, uint32_t lanes, TraverserName traverser, uint32_t units = 1)
-      : RealFrame(warps, lanes, kSide, kSide, 2, make_cornell()), units(units) {
+  Frame(uint32_t warps, uint32_t lanes, TraverserName traverser, uint32_t how_many = 1)
+      : RealFrame(warps, lanes, kSide, kSide, 2, make_cornell()), units(how_many) {
     options.configuration.chip.traverser = traverser;
     if (traverser == TraverserName::Hardware) {
       tree = make_tree_image(scene, tracer.traversal().bvh(), options.configuration.chip, image.material_base);
