@@ -87,6 +87,25 @@ void make_room(Function& function, CompileCounts& counts) {
   if (function.reuses_values) remove_idle_writes(function);
 }
 
+/// All that happens to intermediate code before it gets machine registers.
+void run_passes(Function& function, CompileCounts& counts, const KernelTarget& target) {
+  fold_constants(function);
+  fold_addresses(function);
+  if (function.reuses_values) {
+    reuse_values(function);
+    fold_constants(function);
+    remove_idle_writes(function);
+  }
+  remove_dead(function);
+  if (function.reuses_values) remove_short_jumps(function);
+  join_conditions(function);
+  sink_leaves(function);
+  remove_dead(function);
+  if (function.reuses_values) schedule(function);
+  make_room(function, counts);
+  if (target.triples) function = with_triples(function);
+}
+
 }  // namespace
 
 CompileCounts compile(Function function, Program& program, const KernelTarget& target) {
@@ -104,21 +123,7 @@ CompileCounts compile(Function function, Program& program, const KernelTarget& t
     }
   }
   CompileCounts counts;
-  fold_constants(function);
-  fold_addresses(function);
-  if (function.reuses_values) {
-    reuse_values(function);
-    fold_constants(function);
-    remove_idle_writes(function);
-  }
-  remove_dead(function);
-  if (function.reuses_values) remove_short_jumps(function);
-  join_conditions(function);
-  sink_leaves(function);
-  remove_dead(function);
-  if (function.reuses_values) schedule(function);
-  make_room(function, counts);
-  if (target.triples) function = with_triples(function);
+  run_passes(function, counts, target);
   const Allocation places = allocate(function);
 
   const auto entry = size32(program.code);

@@ -69,7 +69,8 @@ struct Op {
 };
 
 /// Memory of the threads' own, for values that find no place in registers and ray words. Value n of a thread lies at
-/// byte `offset` + base + n stride.
+/// byte `offset` + base + n stride. A value outside all guards is stored by every lane of the warp: lanes without work
+/// must not have the offset of one that has some.
 struct SpillMemory {
   int offset = kNothing;  ///< virtual register that one op writes, before all else and in every lane: bytes
   uint32_t base = 0;      ///< byte address, a multiple of 4

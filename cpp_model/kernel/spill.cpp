@@ -276,7 +276,7 @@ class Spiller {
   Plan plan_for(int number) const {
     Plan plan;
     plan.number = number;
-    const auto [first, last] = ranges_[at(number)];
+    const size_t first = ranges_[at(number)].first, last = ranges_[at(number)].second;
     plan.first = first;
     plan.held.assign(last - first + 1, 1);
     const auto held_before = [&](size_t op) {
@@ -355,7 +355,8 @@ class Spiller {
       Op& op = function_.ops[i];
       if (std::find(plan.renamed.begin(), plan.renamed.end(), i) == plan.renamed.end()) {
         size_t place = i;
-        if (home.kind == Home::Kind::Slot) place = std::max(i, definitions_[at(function_.spill_memory->offset)].front());
+        if (home.kind == Home::Kind::Slot)
+          place = std::max(i, definitions_[at(function_.spill_memory->offset)].front());
         if (!stored) store(op, number, home, behind_[place]);
         continue;
       }

@@ -45,7 +45,7 @@ Compiled compiled(const Body& body, Room room, bool reuses_values = true) {
 /// Compares the machine code with the source run as C++, on eight threads.
 template <typename Body>
 Compiled check(const Body& body, Room room, bool reuses_values = true) {
-  const Compiled code = compiled(body, room, reuses_values);
+  Compiled code = compiled(body, room, reuses_values);
   test::Interpreter machine;
   machine.memory = Memory(kBytes);
   machine.mode.subnormals = Subnormals::Flush;
