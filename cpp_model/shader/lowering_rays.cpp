@@ -102,7 +102,8 @@ void Lowering::place_saved(const Scalar& depth, const Scalar& inside) {
   }
   const Scalar row = binary(Opcode::Iadd, scaled(depth, resources_.height), immediate(Opcode::Shr, *pixel_, 16));
   const Scalar place = binary(Opcode::Iadd, scaled(row, resources_.width), immediate(Opcode::And, *pixel_, 0xffff));
-  saved_ = reg(select(inside, immediate(Opcode::Shl, place, 2), Scalar::constant(0)));
+  const Scalar none = Scalar::constant(static_cast<uint32_t>(resources_.saved_pixels()));
+  saved_ = reg(select(inside, immediate(Opcode::Shl, place, 2), none));
 }
 
 kernel::Function Lowering::finished() {

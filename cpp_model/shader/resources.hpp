@@ -52,9 +52,10 @@ struct Resources {
   uint32_t depth = 1;                           ///< of the deepest rays
   /// Address of what kernels keep of their threads, behind all else; 0: nothing. Value n of the kernel that a ray of
   /// depth d has come to (an eye ray's own: 0) lies at saved + saved_stride() n + 4 ((d height + y) width + x): no other
-  /// kernel of the frame uses that place.
+  /// kernel of the frame uses that place. Threads without a pixel share saved_pixels() behind them, which none reads.
   uint32_t saved = 0;
-  uint64_t saved_stride() const { return uint64_t{4} * width * height * (depth + 1); }
+  uint64_t saved_pixels() const { return uint64_t{4} * width * height * (depth + 1); }
+  uint64_t saved_stride() const { return saved_pixels() + 4; }
 };
 
 }  // namespace raypool::shader
