@@ -340,6 +340,20 @@ TEST(KernelTriples, OnlyWordsInAQuadwordAreLoadedByOne) {
   EXPECT_EQ(count_of(code_of([&](RecordedKernel& k) { load(k, 20); }, kTriples), "ld3 "), 0);
 }
 
+TEST(KernelTriples, MultiplyByOneImmediateAlone) {
+  const auto scale = [](RecordedKernel& k, float z) {
+    k.ray_in();
+    const Vector<RecordedKernel> v = vector_word(k, word::kDirection);
+    set_vector_word(k, word::kOrigin, {v.x * 0.5f, v.y * 0.5f, v.z * z});
+    k.ray_out();
+  };
+  const auto same = [&](RecordedKernel& k) { scale(k, 0.5f); };
+  const auto other = [&](RecordedKernel& k) { scale(k, 0.25f); };
+  EXPECT_EQ(count_of(code_of(same, kTriples), "fmul3 "), 1) << code_of(same, kTriples);
+  EXPECT_EQ(count_of(code_of(other, kTriples), "fmul3 "), 0) << code_of(other, kTriples);
+  EXPECT_EQ(left_by(other, kTriples), left_by(other, {}));
+}
+
 TEST(KernelTriples, WhatOrderForbidsStaysThreeInstructions) {
   // The second word is read from memory that the first has written.
   const auto body = [](RecordedKernel& k) {

@@ -157,10 +157,8 @@ class Segment {
       for (const bool exchanged : {false, true}) {
         if (exchanged && !may_exchange(ops_[i])) continue;
         const Op other = exchanged ? exchange(ops_[i]) : ops_[i];
-        const bool same_b = op.b_is_immediate && other.immediate == op.immediate;
-        if (follows(op.ra, other.ra, one_ra) && (same_b || follows(op.rb, other.rb, false)) &&
-            follows(op.rc, other.rc, false))
-          return i;
+        const bool fits_b = op.b_is_immediate ? other.immediate == op.immediate : follows(op.rb, other.rb, false);
+        if (follows(op.ra, other.ra, one_ra) && fits_b && follows(op.rc, other.rc, false)) return i;
       }
     }
     return kNothing;
