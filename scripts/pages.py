@@ -27,6 +27,7 @@ FOLDERS = (
     "rtl",
     "schemas",
     "scripts",
+    "shaders",
     "sim",
     "studies",
     "tb",
@@ -38,6 +39,7 @@ HISTORY = ("CHANGELOG.md",)  # names what is gone, too: only its links are looke
 MADE = {  # what the page itself makes
     "docs/develop/add-an-alu.md": ("box", "Box", "BOX", "near_of_b"),
     "docs/start/first-change.md": ("CACHE_LRU",),
+    "docs/use/shaders.md": ("gl_",),  # built-in names of GLSL
 }
 
 

@@ -1,0 +1,8 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#extension GL_GOOGLE_include_directive : require
+#include "raypool.glsl"
+
+layout(location = 0) rayPayloadInEXT vec3 light;
+
+void main() { imageStore(raypool_picture, ivec2(gl_LaunchIDEXT.xy), vec4(light, 1.0)); }
