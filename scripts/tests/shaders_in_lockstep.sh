@@ -84,7 +84,7 @@ draw_large() {
   draw $features ao 16x12 1 2
   draw $features preview 16x12 3 1
   draw $features debug 16x12 1 1
-  draw $features path 12x9 4 2
+  draw $features path 6x4 4 2
 }
 if [ "$boundary" = unit ]; then
   on_unit
