@@ -90,8 +90,8 @@ OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/
 DRAWS := $(if $(or $(wildcard $(RAYPOOL)),$(filter estimate sampled,$(ENGINE))),raypool,raypool-sim)
 # built PROGRAM,WORDS: builds it, and prints WORDS where it is not there yet.
 built = @[ -x $(BUILD)/$1 ] || echo 'building $2'; scripts/build.sh $(BUILD) $1
-# options NAMES: of each variable that is set the option, --look-at for LOOK_AT, --units for CUS, --samples for SPP. A value stays one
-# word, and behind the equals sign it may begin with a minus.
+# options NAMES: of each variable that is set the option, --look-at for LOOK_AT, --units for CUS, --samples for SPP. A
+# value stays one word, and behind the equals sign it may begin with a minus.
 options = $(shell for name in $1; do option=$${name/CUS/units} option=$${option/SPP/samples} option=$${option,,}; \
   printf '$${%s:+"--%s=$$%s"} ' $$name $${option//_/-} $$name; done)
 # What is seen of a scene; the frame that is drawn, whatever draws it.

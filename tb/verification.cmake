@@ -21,6 +21,17 @@ raypool_long(50 cosim_machines_more)
 add_test(NAME cosim_command COMMAND ${scripts}/tests/cosim.sh ${raypool_program} ${CMAKE_BINARY_DIR}/cosim-test)
 set_tests_properties(cosim_command PROPERTIES FIXTURES_REQUIRED units_of_cosim TIMEOUT 300)
 
+# Shader sets in lockstep, on that unit and on chips that chip_lockstep_test and chip_traverser_test Verilate too.
+foreach(boundary unit chip)
+  add_test(NAME shaders_in_lockstep_${boundary} COMMAND ${scripts}/tests/shaders_in_lockstep.sh ${raypool_program}
+    ${boundary} ${CMAKE_BINARY_DIR}/test-units)
+  add_test(NAME shaders_in_lockstep_${boundary}_large COMMAND ${scripts}/tests/shaders_in_lockstep.sh
+    ${raypool_program} ${boundary} ${CMAKE_BINARY_DIR}/test-units large)
+  set_tests_properties(shaders_in_lockstep_${boundary} shaders_in_lockstep_${boundary}_large PROPERTIES
+    FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 900)
+  raypool_long(80 shaders_in_lockstep_${boundary}_large)
+endforeach()
+
 # The catalogue of seeded faults fits the Verilog, and a few of them are detected soon; `make faults` runs them all.
 add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults>
   ${CMAKE_BINARY_DIR}/faults-test)

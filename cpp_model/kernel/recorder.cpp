@@ -176,9 +176,7 @@ void Recorder::declare_before(size_t place, const std::vector<int>& registers) {
 int Recorder::declare_predicate() { return emit_predicates(Opcode::Pxor, 0, 0, last_); }
 
 void Recorder::join(int predicate) {
-  const int mask = guard_.all()      ? 0
-                   : guard_.negated ? emit_predicates(Opcode::Pand, 0, 0, last_)
-                                    : guard_.predicate;
+  const int mask = guard_.all() ? 0 : guard_.negated ? emit_predicates(Opcode::Pand, 0, 0, last_) : guard_.predicate;
   const Guard guard = guard_;
   guard_ = {};
   emit_predicates(Opcode::Por, predicate, mask, last_);

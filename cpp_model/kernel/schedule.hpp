@@ -9,7 +9,8 @@ namespace raypool::kernel {
 
 /// Puts operations between two labels, jumps or loops in an order in which few registers are held: what a store or an
 /// export needs is computed right before it, the larger part first, and what ends more values than it begins as soon as
-/// it can. A warp waits for each of its instructions, so that the order costs no time. Changes nothing that is computed.
+/// it can. A warp waits for each of its instructions, so that the order costs no time. Changes nothing that is
+/// computed.
 void schedule(Function& function);
 
 /// Takes away jumps over so few operations that they cost more time than they save.

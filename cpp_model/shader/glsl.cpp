@@ -103,16 +103,19 @@ std::vector<uint32_t> spirv_of(const std::string& path) {
   std::string compiled = path;
   if (fs::path(path).extension() != ".spv") {
     compiled = scratch.file("compiled.spv");
-    const Finished result = run({"glslangValidator", "-V", "--target-env", "vulkan1.2", "-g", "-I" + (fs::path(path).parent_path() / ".").string(),
+    const Finished result = run({"glslangValidator", "-V", "--target-env", "vulkan1.2", "-g",
+                                 "-I" + (fs::path(path).parent_path() / ".").string(),
                                  "-I" + (fs::path(data_folder()) / "shaders").string(), "-o", compiled, path});
     if (result.code != 0) throw InputError(first_error(result.output, path));
   } else {
     words_of(text, path);
   }
   const std::string optimised = scratch.file("optimised.spv");
-  const Finished result = run({"spirv-opt", "--target-env=vulkan1.2", "--scalar-block-layout", "-O", compiled, "-o", optimised});
+  const Finished result =
+      run({"spirv-opt", "--target-env=vulkan1.2", "--scalar-block-layout", "-O", compiled, "-o", optimised});
   if (result.code != 0)
-    throw InputError(fmt::format("{}: spirv-opt refuses it: {}", path, result.output.substr(0, result.output.find('\n'))));
+    throw InputError(
+        fmt::format("{}: spirv-opt refuses it: {}", path, result.output.substr(0, result.output.find('\n'))));
   return words_of(read_file(optimised, "SPIR-V"), path);
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// A shader becomes intermediate code of the kernel compiler. Blocks of SPIR-V become code under masks: each construct is
-// recorded once, in order, and a lane that leaves it early is masked out until the place that it has gone to.
+// A shader becomes intermediate code of the kernel compiler. Blocks of SPIR-V become code under masks: each construct
+// is recorded once, in order, and a lane that leaves it early is masked out until the place that it has gone to.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -25,8 +26,8 @@ inline constexpr uint32_t kShadowRay = 4 | 8;
 
 /// Which of the ray kernels a shader becomes. Throws InputError with file and line for what cannot be done.
 /// `layout`: of the intersections that it imports.
-kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel,
-                       const KernelTarget& target, const RecordLayout& layout = {});
+kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
+                       const RecordLayout& layout = {});
 
 /// How rays leave a kernel, at most, of a thread.
 struct RayLimits {
@@ -58,6 +59,10 @@ class Lowering {
   void region(uint32_t label, uint32_t stop);
   void lines(const Block& block);
   void selection(const Block& block, uint32_t stop);
+  /// One of which the side that is taken is known. Returns false, with nothing done, where it is like any other.
+  bool known_selection(const Block& block, uint32_t taken, uint32_t stop);
+  /// Lanes that jump over an arm, from the op `begin` on, do not hold before it what the merge takes from the arms.
+  void declare_arms(size_t begin, int first_register, const Block& merge, const std::array<uint32_t, 2>& from);
   void unmerged_branch(const Block& block, uint32_t stop);
   void loop(const Block& header, uint32_t stop);
   void switch_over(const Block& header, uint32_t stop);
@@ -112,6 +117,16 @@ class Lowering {
   void operation(const Line& line);
   bool arithmetic(const Line& line);
   bool conversion(const Line& line);
+  /// The instruction's value, scalar by scalar of its one or two operands.
+  template <typename OfScalars>
+  bool set_each(const Line& line, const OfScalars& of_scalars) {
+    const Value a = get(line.operands.at(0));
+    const Value b = line.operands.size() > 1 ? get(line.operands[1]) : a;
+    Value value(a.size());
+    for (size_t i = 0; i < a.size(); ++i) value[i] = of_scalars(a[i], b[i]);
+    set(line, value);
+    return true;
+  }
   bool comparison(const Line& line);
   bool logic(const Line& line);
   bool composite(const Line& line);
@@ -184,15 +199,15 @@ class Lowering {
   };
   std::unordered_map<uint32_t, Product> products_;  // multiplications that wait for the addition that takes them in
   std::unordered_map<uint32_t, std::pair<Scalar, bool>> images_;  // texture record's address; or the picture
-  std::unordered_map<uint32_t, Value> phis_;        // declared ones
-  std::map<uint32_t, int> reach_;                   // of labels: predicate of the lanes that have gone there
-  std::vector<uint32_t> open_;                      // labels that lanes may go to early
-  uint32_t current_ = 0;                            // block whose lines are recorded, or were last
+  std::unordered_map<uint32_t, Value> phis_;                      // declared ones
+  std::map<uint32_t, int> reach_;  // of labels: predicate of the lanes that have gone there
+  std::vector<uint32_t> open_;     // labels that lanes may go to early
+  uint32_t current_ = 0;           // block whose lines are recorded, or were last
   int loops_ = 0;
-  std::set<uint32_t> written_;                      // variables
-  std::optional<int> saved_;                        // register: where the thread's own memory lies, bytes
-  std::optional<Scalar> pixel_, flags_;             // words of the ray that has come
-  bool tag_came_ = false;                           // with it
+  std::set<uint32_t> written_;           // variables
+  std::optional<int> saved_;             // register: where the thread's own memory lies, bytes
+  std::optional<Scalar> pixel_, flags_;  // words of the ray that has come
+  bool tag_came_ = false;                // with it
   /// What holds of the lanes of the mask at one place.
   struct Way {
     std::set<uint32_t> given_away;  // payloads that a ray has taken with it

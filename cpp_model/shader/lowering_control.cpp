@@ -48,9 +48,8 @@ std::vector<Case> cases_of(const Module& module, const Block& header) {
   const std::vector<uint32_t>& operands = header.end.operands;
   entry(operands.at(1)).is_default = true;
   for (size_t i = 2; i + 1 < operands.size(); i += 2) entry(operands[i + 1]).literals.push_back(operands[i]);
-  std::stable_sort(cases.begin(), cases.end(), [&](const Case& a, const Case& b) {
-    return &module.block(a.label) < &module.block(b.label);
-  });
+  std::stable_sort(cases.begin(), cases.end(),
+                   [&](const Case& a, const Case& b) { return &module.block(a.label) < &module.block(b.label); });
   return cases;
 }
 
@@ -305,26 +304,37 @@ void Lowering::select_phis(const Block& merge, const Scalar& chosen, uint32_t fr
   }
 }
 
+bool Lowering::known_selection(const Block& block, uint32_t taken, uint32_t stop) {
+  const uint32_t merge = block.merge;
+  // The merge has a value from this side alone.
+  const Flow side = flow(taken, merge);
+  if (!side.leaves.empty() || merge == stop || is_open(merge)) return false;
+  uint32_t from = block.label;
+  if (taken != merge) {
+    go(block.label, taken, merge);
+    from = current_;
+  }
+  if (side.falls) {
+    for (const Line& phi : module_.block(merge).phis) values_[phi.id] = incoming(phi, from);
+    region(merge, stop);
+  }
+  return true;
+}
+
+void Lowering::declare_arms(size_t begin, int first_register, const Block& merge, const std::array<uint32_t, 2>& from) {
+  std::set<int> of_arms;
+  for (const Line& phi : merge.phis)
+    for (const uint32_t arm : from)
+      for (const Scalar& scalar : incoming(phi, arm))
+        if (scalar.kind == Scalar::Kind::Register && scalar.number >= first_register) of_arms.insert(scalar.number);
+  recorder_.declare_before(begin, {of_arms.begin(), of_arms.end()});
+}
+
 void Lowering::selection(const Block& block, uint32_t stop) {
   const uint32_t merge = block.merge, yes = block.end.operands.at(1), no = block.end.operands.at(2);
   const Scalar chosen = get_scalar(block.end.operands.at(0));
+  if (chosen.is_constant() && known_selection(block, chosen.bits != 0 ? yes : no, stop)) return;
   const Way before = way_;
-  if (chosen.is_constant()) {
-    const uint32_t taken = chosen.bits != 0 ? yes : no;
-    // The merge has a value from this side alone.
-    const Flow side = flow(taken, merge);
-    if (side.leaves.empty() && merge != stop && !is_open(merge)) {
-      uint32_t from = block.label;
-      if (taken != merge) {
-        go(block.label, taken, merge);
-        from = current_;
-      }
-      if (!side.falls) return;
-      for (const Line& phi : module_.block(merge).phis) values_[phi.id] = incoming(phi, from);
-      region(merge, stop);
-      return;
-    }
-  }
   const Flow then_flow = flow(yes, merge), else_flow = flow(no, merge);
   const bool leaves = !then_flow.leaves.empty() || !else_flow.leaves.empty();
   const bool falls = then_flow.falls || else_flow.falls;
@@ -375,13 +385,7 @@ void Lowering::selection(const Block& block, uint32_t stop) {
   way_ = after.value_or(before);
   if (!falls || !merge_is_inner) return;
   if (by_selection) {
-    // Lanes that jump over an arm do not hold its values before it.
-    std::set<int> of_arms;
-    for (const Line& phi : module_.block(merge).phis)
-      for (const uint32_t from : {from_then, from_else})
-        for (const Scalar& scalar : incoming(phi, from))
-          if (scalar.kind == Scalar::Kind::Register && scalar.number >= first_register) of_arms.insert(scalar.number);
-    recorder_.declare_before(begin, {of_arms.begin(), of_arms.end()});
+    declare_arms(begin, first_register, module_.block(merge), {from_then, from_else});
     select_phis(module_.block(merge), chosen, from_then, from_else);
   }
   continue_at(merge, stop, masked);
@@ -480,7 +484,7 @@ void Lowering::switch_over(const Block& header, uint32_t stop) {
     }
   }
   const Way before = way_;
-  Way after = before;
+  Way after = way_;
   const auto matches = [&](const Case& one) {
     Scalar any = Scalar::constant(0);
     for (const uint32_t literal : one.literals)
@@ -518,8 +522,7 @@ void Lowering::switch_over(const Block& header, uint32_t stop) {
   open_.resize(opened);
   way_ = after;
   way_.known.clear();
-  if (!whole.falls || !merge_is_inner) return;
-  continue_at(merge, stop, masked);
+  if (whole.falls && merge_is_inner) continue_at(merge, stop, masked);
 }
 
 }  // namespace raypool::shader

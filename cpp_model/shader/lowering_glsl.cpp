@@ -1,6 +1,5 @@
 // GLSL's own functions, as the extended instructions of GLSL.std.450.
 #include <fmt/format.h>
-
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include "bits.hpp"
@@ -20,13 +19,13 @@ void Lowering::glsl(const Line& line) {
   if (!result) result = glsl_of_floats(line, operands);
   if (!result) result = glsl_of_integers(line, operands);
   if (!result) {
-    fail(fmt::format("function {} of GLSL.std.450 is not supported: write the shader without it",
-                     line.operands.at(1)));
+    fail(fmt::format("function {} of GLSL.std.450 is not supported: write the shader without it", line.operands.at(1)));
   }
   set(line, *result);
 }
 
 /// Component by component.
+// NOLINTNEXTLINE(readability-function-size): a list of functions
 std::optional<Value> Lowering::glsl_of_floats(const Line& line, const std::vector<Value>& operands) {
   const Value& first = operands.at(0);
   const auto one = [&](const auto& function) {
@@ -48,7 +47,8 @@ std::optional<Value> Lowering::glsl_of_floats(const Line& line, const std::vecto
   const auto three = [&](const auto& function) {
     Value value(first.size());
     for (size_t i = 0; i < value.size(); ++i) {
-      const RecordedFloat x = as_float(first[i]), y = as_float(operands.at(1).at(i)), z = as_float(operands.at(2).at(i));
+      const RecordedFloat x = as_float(first[i]), y = as_float(operands.at(1).at(i)),
+                          z = as_float(operands.at(2).at(i));
       value[i] = of(function(k_, x, y, z));
     }
     return value;
@@ -145,9 +145,8 @@ std::optional<Value> Lowering::glsl_of_floats(const Line& line, const std::vecto
     case GLSLstd450Step:
       return two([](auto& k, const auto& edge, const auto& x) { return math::step(k, edge, x); });
     case GLSLstd450SmoothStep:
-      return three([](auto& k, const auto& low, const auto& high, const auto& x) {
-        return math::smoothstep(k, low, high, x);
-      });
+      return three(
+          [](auto& k, const auto& low, const auto& high, const auto& x) { return math::smoothstep(k, low, high, x); });
     case GLSLstd450Fma: {
       Value value(first.size());
       for (size_t i = 0; i < value.size(); ++i)
@@ -239,6 +238,7 @@ std::optional<Value> Lowering::glsl_of_integers(const Line& line, const std::vec
 }
 
 /// Of whole vectors and matrices, and of packed words.
+// NOLINTNEXTLINE(readability-function-size): a list of functions
 std::optional<Value> Lowering::glsl_of_vectors(const Line& line, const std::vector<Value>& operands) {
   const Value& a = operands.at(0);
   const auto times = [&](const Value& vector, const Scalar& factor) {

@@ -108,7 +108,8 @@ Pointer Lowering::global(uint32_t id, const Variable& variable) {
         return pointer;
       }
       const auto buffer = resources_.buffers.find(place);
-      if (buffer == resources_.buffers.end()) missing(variable.storage == spv::StorageClass::Uniform ? "block" : "buffer");
+      if (buffer == resources_.buffers.end())
+        missing(variable.storage == spv::StorageClass::Uniform ? "block" : "buffer");
       pointer.to = Pointer::To::Memory;
       pointer.offset = buffer->second.address;
       pointer.size = buffer->second.bytes;
@@ -356,9 +357,10 @@ Value Lowering::chosen_part(const Value& whole, const Pointer& pointer, size_t d
   }
   const DynamicIndex& part = pointer.dynamic[depth - 1];
   if (part.count * size > kMostChoices) {
-    fail(fmt::format("an array of {} elements in a variable is indexed by a value, which takes an instruction for each "
-                     "element: put it into a buffer",
-                     part.count));
+    fail(
+        fmt::format("an array of {} elements in a variable is indexed by a value, which takes an instruction for each "
+                    "element: put it into a buffer",
+                    part.count));
   }
   Value value = chosen_part(whole, pointer, depth - 1, offset, size);
   bool copied = false;
@@ -380,9 +382,10 @@ void Lowering::store_chosen(Value& whole, const Pointer& pointer, size_t depth, 
   }
   const DynamicIndex& part = pointer.dynamic[depth - 1];
   if (part.count * value.size() > kMostChoices) {
-    fail(fmt::format("an array of {} elements in a variable is written at an index that is a value, which takes "
-                     "instructions for each element: make it smaller",
-                     part.count));
+    fail(
+        fmt::format("an array of {} elements in a variable is written at an index that is a value, which takes "
+                    "instructions for each element: make it smaller",
+                    part.count));
   }
   for (uint32_t n = 0; n < part.count; ++n) {
     under(compare(Opcode::Ieq, part.index, Scalar::constant(n)),

@@ -9,6 +9,7 @@
 
 namespace raypool::shader {
 
+// NOLINTNEXTLINE(readability-function-size): a list of instructions
 void Lowering::operation(const Line& line) {
   switch (line.op) {
     case spv::Op::OpAccessChain:
@@ -51,14 +52,16 @@ void Lowering::operation(const Line& line) {
     default:
       break;
   }
-  if (arithmetic(line) || conversion(line) || comparison(line) || logic(line) || composite(line) || matrix(line)) return;
+  if (arithmetic(line) || conversion(line) || comparison(line) || logic(line) || composite(line) || matrix(line))
+    return;
   switch (line.op) {
     case spv::Op::OpImageRead:
       fail("imageLoad is not supported, as other kernels add to the picture meanwhile: carry the value in the payload");
     case spv::Op::OpReportIntersectionKHR:
     case spv::Op::OpExecuteCallableKHR:
-      fail("intersection and callable shaders are not supported: triangles are tested by the traverser, and a function "
-           "takes the place of a callable shader");
+      fail(
+          "intersection and callable shaders are not supported: triangles are tested by the traverser, and a function "
+          "takes the place of a callable shader");
     case spv::Op::OpControlBarrier:
     case spv::Op::OpMemoryBarrier:
       fail("barriers are not supported: threads share nothing");
@@ -111,15 +114,9 @@ void Lowering::product(const Line& line) {
   set(line, value);
 }
 
+// NOLINTNEXTLINE(readability-function-size): a list of instructions
 bool Lowering::arithmetic(const Line& line) {
-  const auto each = [&](const auto& of_scalars) {
-    const Value a = get(line.operands.at(0));
-    const Value b = line.operands.size() > 1 ? get(line.operands[1]) : a;
-    Value value(a.size());
-    for (size_t i = 0; i < a.size(); ++i) value[i] = of_scalars(a[i], b[i]);
-    set(line, value);
-    return true;
-  };
+  const auto each = [&](const auto& of_scalars) { return set_each(line, of_scalars); };
   const auto plain = [&](Opcode opcode) {
     return each([&](const Scalar& a, const Scalar& b) { return narrowed_result(line, binary(opcode, a, b)); });
   };
@@ -297,6 +294,7 @@ Scalar Lowering::narrowed_result(const Line& line, const Scalar& value) {
   return narrowed(its.kind == TypeKind::Vector ? its.element : line.type, value);
 }
 
+// NOLINTNEXTLINE(readability-function-size): a list of instructions
 bool Lowering::conversion(const Line& line) {
   const auto each = [&](const auto& of_scalar) {
     Value value = get(line.operands.at(0));
@@ -366,15 +364,9 @@ bool Lowering::conversion(const Line& line) {
   }
 }
 
+// NOLINTNEXTLINE(readability-function-size): a list of instructions
 bool Lowering::comparison(const Line& line) {
-  const auto each = [&](const auto& of_scalars) {
-    const Value a = get(line.operands.at(0));
-    const Value b = line.operands.size() > 1 ? get(line.operands[1]) : a;
-    Value value(a.size());
-    for (size_t i = 0; i < a.size(); ++i) value[i] = of_scalars(a[i], b[i]);
-    set(line, value);
-    return true;
-  };
+  const auto each = [&](const auto& of_scalars) { return set_each(line, of_scalars); };
   const auto plain = [&](Opcode opcode) {
     return each([&](const Scalar& a, const Scalar& b) { return compare(opcode, a, b); });
   };
@@ -442,14 +434,7 @@ bool Lowering::comparison(const Line& line) {
 }
 
 bool Lowering::logic(const Line& line) {
-  const auto each = [&](const auto& of_scalars) {
-    const Value a = get(line.operands.at(0));
-    const Value b = line.operands.size() > 1 ? get(line.operands[1]) : a;
-    Value value(a.size());
-    for (size_t i = 0; i < a.size(); ++i) value[i] = of_scalars(a[i], b[i]);
-    set(line, value);
-    return true;
-  };
+  const auto each = [&](const auto& of_scalars) { return set_each(line, of_scalars); };
   const auto differ = [&](const Scalar& a, const Scalar& b) {
     if (a.is_constant()) return a.bits != 0 ? inverse(b) : b;
     if (b.is_constant()) return b.bits != 0 ? inverse(a) : a;
@@ -502,6 +487,7 @@ Value Lowering::dynamic_part(const Value& whole, uint32_t part_scalars, const Sc
   return part;
 }
 
+// NOLINTNEXTLINE(readability-function-size): a list of instructions
 bool Lowering::composite(const Line& line) {
   // Where a part lies in the scalars of a value.
   const auto place = [&](uint32_t type, size_t first_index) {
@@ -577,6 +563,7 @@ Scalar Lowering::dot(const Value& a, const Value& b) {
   return sum;
 }
 
+// NOLINTNEXTLINE(readability-function-size): a list of instructions
 bool Lowering::matrix(const Line& line) {
   const auto column = [](const Value& whole, size_t rows, size_t number) {
     return Value(whole.begin() + static_cast<std::ptrdiff_t>(rows * number),

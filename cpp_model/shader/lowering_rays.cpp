@@ -27,8 +27,8 @@ std::string stage_name(RayKernel kernel) {
 
 }  // namespace
 
-kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel,
-                       const KernelTarget& target, const RecordLayout& layout) {
+kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
+                       const RecordLayout& layout) {
   return Lowering(module, resources, kernel, target, layout).run();
 }
 
@@ -80,10 +80,10 @@ kernel::Function Lowering::run() {
   const Scalar row = binary(Opcode::Shr, thread, of(k_.int_argument(argument::kTileWidthLog2)));
   const Scalar corner = of(k_.block());
   pixel_ = binary(Opcode::Iadd, binary(Opcode::Iadd, x, immediate(Opcode::Shl, row, 16)), corner);
-  const Scalar in_row = compare(Opcode::Ult, immediate(Opcode::And, *pixel_, 0xffff),
-                                Scalar::constant(resources_.width));
-  const Scalar in_picture = compare(Opcode::Ult, immediate(Opcode::Shr, *pixel_, 16),
-                                    Scalar::constant(resources_.height));
+  const Scalar in_row =
+      compare(Opcode::Ult, immediate(Opcode::And, *pixel_, 0xffff), Scalar::constant(resources_.width));
+  const Scalar in_picture =
+      compare(Opcode::Ult, immediate(Opcode::Shr, *pixel_, 16), Scalar::constant(resources_.height));
   const Scalar inside = both(in_row, in_picture);
   place_saved(Scalar::constant(0), inside);
   under(inside, [&] {
@@ -109,7 +109,8 @@ void Lowering::place_saved(const Scalar& depth, const Scalar& inside) {
 kernel::Function Lowering::finished() {
   kernel::Function function = recorder_.finish();
   function.reuses_values = true;
-  if (saved_) function.spill_memory = {*saved_, resources_.saved, static_cast<uint32_t>(resources_.saved_stride()), kSlots};
+  if (saved_)
+    function.spill_memory = {*saved_, resources_.saved, static_cast<uint32_t>(resources_.saved_stride()), kSlots};
   return function;
 }
 
@@ -155,8 +156,8 @@ Value Lowering::built_in(uint32_t number, uint32_t type) {
       return {Scalar::constant(0)};  // the scene is one mesh
     case spv::BuiltIn::HitKindKHR: {
       only(has_hit, "gl_HitKindEXT");
-      const Scalar back = compare(Opcode::Fgt, dot(words(word::kDirection, 3), words(word::kNormal, 3)),
-                                  Scalar::constant(0));
+      const Scalar back =
+          compare(Opcode::Fgt, dot(words(word::kDirection, 3), words(word::kNormal, 3)), Scalar::constant(0));
       return {select(back, Scalar::constant(0xff), Scalar::constant(0xfe))};
     }
     case spv::BuiltIn::IncomingRayFlagsKHR:
@@ -181,9 +182,10 @@ Value Lowering::hit_attribute(uint32_t type) {
     fail(fmt::format("a {} shader has no hit attributes", stage_name(kernel_)));
   constexpr uint32_t kMost = 7;
   if (size > kMost) {
-    fail(fmt::format("hit attributes of {} words: a hit has barycentrics (vec2), normal (vec3), material (uint) and "
-                     "depth (uint), in this order",
-                     size));
+    fail(
+        fmt::format("hit attributes of {} words: a hit has barycentrics (vec2), normal (vec3), material (uint) and "
+                    "depth (uint), in this order",
+                    size));
   }
   Value value;
   for (uint32_t i = 0; i < size; ++i) {
@@ -226,9 +228,10 @@ std::vector<std::pair<int, bool>> Lowering::payload_words(uint32_t type) const {
   };
   visit(visit, type);
   if (next > kPayloadWords) {
-    fail(fmt::format("a payload has {} words, and a ray carries {} and a uint16_t: carry less, or compute it again from "
-                     "the hit",
-                     next, kPayloadWords));
+    fail(
+        fmt::format("a payload has {} words, and a ray carries {} and a uint16_t: carry less, or compute it again from "
+                    "the hit",
+                    next, kPayloadWords));
   }
   return words;
 }
@@ -249,9 +252,10 @@ void Lowering::load_payload(uint32_t id, const Variable& variable) {
 
 void Lowering::check_not_given_away(uint32_t id) const {
   if (way_.given_away.count(id) == 0) return;
-  fail(fmt::format("payload '{}' is read after traceRayEXT, but a ray takes its payload along and the shader ends: add "
-                   "to the picture in the shaders that the ray comes to",
-                   module_.name_of(id)));
+  fail(
+      fmt::format("payload '{}' is read after traceRayEXT, but a ray takes its payload along and the shader ends: add "
+                  "to the picture in the shaders that the ray comes to",
+                  module_.name_of(id)));
 }
 
 void Lowering::put_word(int number, const Scalar& value) {
@@ -260,18 +264,22 @@ void Lowering::put_word(int number, const Scalar& value) {
 
 void Lowering::trace(const Line& line) {
   if (kernel_ == RayKernel::Shade) fail("a miss shader traces a ray: trace it in the closest-hit shader");
-  if (loops_ > 0) fail("traceRayEXT is called in a loop: a thread casts one ray on and one shadow ray, outside of loops");
+  if (loops_ > 0)
+    fail("traceRayEXT is called in a loop: a thread casts one ray on and one shadow ray, outside of loops");
   const Scalar flags = get_scalar(line.operands.at(1));
   if (!flags.is_constant()) fail("the ray flags are computed: give traceRayEXT constant flags");
   if ((flags.bits & ~(kShadowRay | kOpaque | kCullNoOpaque)) != 0) {
-    fail(fmt::format("ray flags {:#x}: of them only gl_RayFlagsOpaqueEXT, and gl_RayFlagsTerminateOnFirstHitEXT with "
-                     "gl_RayFlagsSkipClosestHitShaderEXT are supported",
-                     flags.bits));
+    fail(
+        fmt::format("ray flags {:#x}: of them only gl_RayFlagsOpaqueEXT, and gl_RayFlagsTerminateOnFirstHitEXT with "
+                    "gl_RayFlagsSkipClosestHitShaderEXT are supported",
+                    flags.bits));
   }
   const bool shadow = (flags.bits & kShadowRay) == kShadowRay;
   if (!shadow && (flags.bits & kShadowRay) != 0) {
-    fail("gl_RayFlagsTerminateOnFirstHitEXT and gl_RayFlagsSkipClosestHitShaderEXT go together here: a ray looks for the "
-         "closest hit, or asks whether it meets anything");
+    fail(
+        "gl_RayFlagsTerminateOnFirstHitEXT and gl_RayFlagsSkipClosestHitShaderEXT go together here: a ray looks for "
+        "the "
+        "closest hit, or asks whether it meets anything");
   }
   int& count = shadow ? way_.cast.shadow : way_.cast.normal;
   if (shadow && kernel_ == RayKernel::CastEye)

@@ -57,6 +57,7 @@ Lowering::RecordedFloat Lowering::as_float(const Scalar& scalar) {
 }
 Lowering::RecordedBool Lowering::as_bool(const Scalar& scalar) { return RecordedBool::of(predicate(scalar)); }
 
+// NOLINTNEXTLINE(readability-function-size): a list of instructions
 Scalar Lowering::binary(Opcode opcode, const Scalar& a, const Scalar& b) {
   if (a.is_constant() && b.is_constant()) {
     switch (opcode) {

@@ -221,7 +221,7 @@ typename K::Float mix(K&, const typename K::Float& x, const typename K::Float& y
 }
 template <typename K>
 typename K::Bool isnan(K&, const typename K::Float& x) {
-  return x != x;
+  return x != x;  // NOLINT(misc-redundant-expression): of NaN alone
 }
 template <typename K>
 typename K::Bool isinf(K&, const typename K::Float& x) {
@@ -262,7 +262,7 @@ typename K::Float sin(K&, const typename K::Float& x) {
   rest = multiply_add(whole, -detail::kPiLow, rest);
   const Float square = rest * rest;
   const Float result = as_float(as_int(rest * detail::sine_ratio<K>(square)) ^ (turns << 31));
-  return select(square > 4.0f, x - x, result);
+  return select(square > 4.0f, x - x, result);  // NOLINT(misc-redundant-expression): 0, or NaN
 }
 /// As sin().
 template <typename K>
@@ -277,7 +277,7 @@ typename K::Float cos(K&, const typename K::Float& x) {
   rest = multiply_add(whole, -detail::kPiLow, rest);
   const Float square = rest * rest;
   const Float result = as_float(as_int(rest * detail::sine_ratio<K>(square)) ^ (turns << 31));
-  return select(square > 4.0f, x - x, result);
+  return select(square > 4.0f, x - x, result);  // NOLINT(misc-redundant-expression): 0, or NaN
 }
 /// 4 ulp for |x| up to pi/4; beyond, the tangent of an x that is off by less than 2^-23, or |x| 2^-23 from 2^12 on.
 /// Soon 0 beyond 2^22, NaN of infinities.
@@ -299,7 +299,7 @@ typename K::Float tan(K&, const typename K::Float& x) {
   const Float numerator = select(is_odd, cosine, sine);
   const Float denominator = select(is_odd, sine, cosine);
   const Float result = as_float(as_int(numerator / denominator) ^ odd);
-  return select(square > 1.0f, x - x, result);
+  return select(square > 1.0f, x - x, result);  // NOLINT(misc-redundant-expression): 0, or NaN
 }
 /// 5 ulp. NaN beyond -1 .. 1.
 template <typename K>

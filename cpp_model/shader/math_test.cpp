@@ -55,6 +55,7 @@ uint32_t native(const Function& function, const Operands& in, uint32_t significa
 
 /// Calls visit(name, function) for every function of the header.
 template <typename Visit>
+// NOLINTNEXTLINE(readability-function-size): a list of functions
 void each_function(const Visit& visit) {
   visit("trunc", RAYPOOL_WORDS(as_int(math::trunc(k, as_float(a)))));
   visit("floor", RAYPOOL_WORDS(as_int(math::floor(k, as_float(a)))));

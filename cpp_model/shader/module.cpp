@@ -108,6 +108,72 @@ void Module::fail(const kernel::Location& where, const std::string& what) const 
   throw InputError(fmt::format("{}:{}: {}", where.file, where.line, what));
 }
 
+bool Module::read_name(spv::Op op, const std::vector<uint32_t>& operands) {
+  size_t behind = 1;
+  switch (op) {
+    case spv::Op::OpName:
+      names_[operands.at(0)] = text_at(operands, behind);
+      return true;
+    case spv::Op::OpMemberName:
+      behind = 2;
+      members_[{operands.at(0), operands.at(1)}].name = text_at(operands, behind);
+      return true;
+    case spv::Op::OpExtInstImport:
+      if (text_at(operands, behind) == "GLSL.std.450") glsl_set_ = operands.at(0);
+      return true;
+    case spv::Op::OpEntryPoint:
+      if (entry_ != 0) fail({}, "it has two entry points: give each shader a file of its own");
+      stage_ = static_cast<spv::ExecutionModel>(operands.at(0));
+      entry_ = operands.at(1);
+      return true;
+    case spv::Op::OpCapability:
+      switch (static_cast<spv::Capability>(operands.at(0))) {
+        case spv::Capability::Float64:
+          fail({}, "it uses double, which the machine does not have: use float");
+        case spv::Capability::Int64:
+          fail({}, "it uses 64-bit integers, which the machine does not have: use uint or uvec2");
+        case spv::Capability::Float16:
+          fail({}, "it uses 16-bit floats, which the machine does not have: use float");
+        default:
+          return true;
+      }
+    case spv::Op::OpDecorate:
+      decorate(operands.at(0), {operands.begin() + 1, operands.end()});
+      return true;
+    case spv::Op::OpMemberDecorate:
+      decorate_member(operands);
+      return true;
+    default:
+      return false;
+  }
+}
+
+Line Module::line_of(spv::Op op, const std::vector<uint32_t>& operands, const kernel::Location& where) {
+  bool has_result = false, has_type = false;
+  spv::HasResultAndType(op, &has_result, &has_type);
+  Line line;
+  line.op = op;
+  line.where = where;
+  size_t first = 0;
+  if (has_type) line.type = operands.at(first++);
+  if (has_result) line.id = operands.at(first++);
+  line.operands.assign(operands.begin() + static_cast<std::ptrdiff_t>(first), operands.end());
+  if (line.type != 0) types_of_values_[line.id] = line.type;
+  return line;
+}
+
+void Module::read_global(Line line, const std::map<uint32_t, uint32_t>& specialization) {
+  if (line.op == spv::Op::OpVariable) {
+    variables_[line.id] = {line.type, static_cast<spv::StorageClass>(line.operands.at(0)),
+                           line.operands.size() > 1 ? line.operands[1] : 0};
+  } else if (is_constant(line.op)) {
+    read_constant(std::move(line), specialization);
+  } else {
+    fail(line.where, fmt::format("SPIR-V instruction {} is not supported here: write the shader without it",
+                                 static_cast<uint32_t>(line.op)));
+  }
+}
+
 void Module::read(const std::vector<uint32_t>& words, const std::map<uint32_t, uint32_t>& specialization) {
   if (words.size() < 5 || words[0] != kMagic)
     fail({}, "this is not SPIR-V of this machine's byte order: compile it with glslangValidator -V");
@@ -122,10 +188,9 @@ void Module::read(const std::vector<uint32_t>& words, const std::map<uint32_t, u
     std::vector<uint32_t> operands(words.begin() + static_cast<std::ptrdiff_t>(at) + 1,
                                    words.begin() + static_cast<std::ptrdiff_t>(at + length));
     at += length;
-    size_t behind = 0;
+    size_t behind = 1;
     switch (op) {
       case spv::Op::OpString:
-        behind = 1;
         files_[operands.at(0)] = lasting(text_at(operands, behind));
         continue;
       case spv::Op::OpLine: {
@@ -136,40 +201,6 @@ void Module::read(const std::vector<uint32_t>& words, const std::map<uint32_t, u
       }
       case spv::Op::OpNoLine:
         where = file_;
-        continue;
-      case spv::Op::OpName:
-        behind = 1;
-        names_[operands.at(0)] = text_at(operands, behind);
-        continue;
-      case spv::Op::OpMemberName:
-        behind = 2;
-        members_[{operands.at(0), operands.at(1)}].name = text_at(operands, behind);
-        continue;
-      case spv::Op::OpExtInstImport:
-        behind = 1;
-        if (text_at(operands, behind) == "GLSL.std.450") glsl_set_ = operands.at(0);
-        continue;
-      case spv::Op::OpEntryPoint:
-        if (entry_ != 0) fail({}, "it has two entry points: give each shader a file of its own");
-        stage_ = static_cast<spv::ExecutionModel>(operands.at(0));
-        entry_ = operands.at(1);
-        continue;
-      case spv::Op::OpCapability:
-        switch (static_cast<spv::Capability>(operands.at(0))) {
-          case spv::Capability::Float64:
-            fail({}, "it uses double, which the machine does not have: use float");
-          case spv::Capability::Int64:
-            fail({}, "it uses 64-bit integers, which the machine does not have: use uint or uvec2");
-          case spv::Capability::Float16:
-            fail({}, "it uses 16-bit floats, which the machine does not have: use float");
-          default:
-            continue;
-        }
-      case spv::Op::OpDecorate:
-        decorate(operands.at(0), {operands.begin() + 1, operands.end()});
-        continue;
-      case spv::Op::OpMemberDecorate:
-        decorate_member(operands);
         continue;
       case spv::Op::OpFunction:
         in_entry = operands.at(1) == entry_;
@@ -182,37 +213,21 @@ void Module::read(const std::vector<uint32_t>& words, const std::map<uint32_t, u
       default:
         break;
     }
-    if (says_nothing(op)) continue;
+    if (read_name(op, operands) || says_nothing(op)) continue;
     if (op >= spv::Op::OpTypeVoid && op <= spv::Op::OpTypeFunction) {
       read_type(op, operands);
       continue;
     }
     if (op == spv::Op::OpTypeRayQueryKHR)
-      fail(where, "rayQueryEXT is not supported: trace with traceRayEXT, which the traverser does for a thread of its own");
+      fail(where,
+           "rayQueryEXT is not supported: trace with traceRayEXT, which the traverser does for a thread of its own");
     if (op == spv::Op::OpTypeAccelerationStructureKHR) {
       types_[operands.at(0)].kind = TypeKind::AccelerationStructure;
       continue;
     }
-    bool has_result = false, has_type = false;
-    spv::HasResultAndType(op, &has_result, &has_type);
-    Line line;
-    line.op = op;
-    line.where = where;
-    size_t first = 0;
-    if (has_type) line.type = operands.at(first++);
-    if (has_result) line.id = operands.at(first++);
-    line.operands.assign(operands.begin() + static_cast<std::ptrdiff_t>(first), operands.end());
-    if (line.type != 0) types_of_values_[line.id] = line.type;
+    Line line = line_of(op, operands, where);
     if (functions == 0) {
-      if (op == spv::Op::OpVariable) {
-        variables_[line.id] = {line.type, static_cast<spv::StorageClass>(line.operands.at(0)),
-                               line.operands.size() > 1 ? line.operands[1] : 0};
-      } else if (is_constant(op)) {
-        read_constant(std::move(line), specialization);
-      } else {
-        fail(where, fmt::format("SPIR-V instruction {} is not supported here: write the shader without it",
-                                static_cast<uint32_t>(op)));
-      }
+      read_global(std::move(line), specialization);
     } else if (in_entry) {
       read_line(std::move(line), open);
     }
@@ -221,6 +236,7 @@ void Module::read(const std::vector<uint32_t>& words, const std::map<uint32_t, u
   for (size_t i = 0; i < blocks_.size(); ++i) block_at_[blocks_[i].label] = i;
 }
 
+// NOLINTNEXTLINE(readability-function-size): a list of types
 void Module::read_type(spv::Op op, const std::vector<uint32_t>& operands) {
   Type type;
   const uint32_t id = operands.at(0);
@@ -372,6 +388,7 @@ void Module::read_constant(Line line, const std::map<uint32_t, uint32_t>& specia
 }
 
 /// An expression of specialization constants: of integers and conditions.
+// NOLINTNEXTLINE(readability-function-size): a list of instructions
 std::optional<uint32_t> Module::fold(const Line& line) const {
   std::vector<uint32_t> values;
   for (size_t i = 1; i < line.operands.size(); ++i) {

@@ -35,10 +35,10 @@ enum class TypeKind : uint8_t {
 
 struct Type {
   TypeKind kind = TypeKind::Void;
-  uint32_t bits = 32;     ///< of a number
+  uint32_t bits = 32;      ///< of a number
   bool is_signed = false;  ///< of an integer
-  uint32_t element = 0;   ///< of a vector, matrix (a column) or array; of what a pointer points to
-  uint32_t count = 0;     ///< elements of a vector, matrix or array
+  uint32_t element = 0;    ///< of a vector, matrix (a column) or array; of what a pointer points to
+  uint32_t count = 0;      ///< elements of a vector, matrix or array
   spv::StorageClass storage = spv::StorageClass::Function;
   std::vector<uint32_t> members;  ///< of a struct
   uint32_t stride = 0;            ///< ArrayStride, bytes
@@ -55,7 +55,7 @@ struct MemberLayout {
 
 struct Line {
   spv::Op op = spv::Op::OpNop;
-  uint32_t type = 0, id = 0;        ///< 0: none
+  uint32_t type = 0, id = 0;       ///< 0: none
   std::vector<uint32_t> operands;  ///< behind these
   kernel::Location where;
 };
@@ -63,7 +63,7 @@ struct Line {
 struct Block {
   uint32_t label = 0;
   std::vector<Line> phis;
-  std::vector<Line> lines;              ///< neither phis nor what follows here
+  std::vector<Line> lines;            ///< neither phis nor what follows here
   uint32_t merge = 0, continues = 0;  ///< of a structured header; continues: a loop's
   Line end;                           ///< the terminator
 };
@@ -115,6 +115,10 @@ class Module {
 
  private:
   void read(const std::vector<uint32_t>& words, const std::map<uint32_t, uint32_t>& specialization);
+  /// Names, decorations, and what the shader is; false: the instruction is none of these.
+  bool read_name(spv::Op op, const std::vector<uint32_t>& operands);
+  Line line_of(spv::Op op, const std::vector<uint32_t>& operands, const kernel::Location& where);
+  void read_global(Line line, const std::map<uint32_t, uint32_t>& specialization);
   void read_type(spv::Op op, const std::vector<uint32_t>& operands);
   void decorate(uint32_t id, const std::vector<uint32_t>& operands);
   void decorate_member(const std::vector<uint32_t>& operands);

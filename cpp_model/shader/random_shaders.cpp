@@ -38,6 +38,7 @@ using Patterns = std::vector<const char*>;
 
 // Expressions of a type. What grows only does so within a few levels: 64 multiplied with itself eight times is no more
 // than 3e14. Functions with poles, and those that are undefined somewhere, get arguments where they are defined.
+// NOLINTNEXTLINE(readability-function-size): a list of patterns
 const Patterns& patterns_of(char letter) {
   static const Patterns floats = {"($f + $f)",
                                   "($f - $f)",

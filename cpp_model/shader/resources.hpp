@@ -37,7 +37,7 @@ struct Textures {
 /// A texture record: address of the texels (a multiple of 64), width, height, wrap modes (words). Texel (x, y) is at
 /// address + 8 (y width + x): red, green, blue, alpha as 16 bits each, linear, 65535 is 1.
 inline constexpr uint32_t kTextureBytes = 16;
-inline constexpr uint32_t kTextureWrapS = 1;    ///< bits 1:0 of the wrap word: a Wrap
+inline constexpr uint32_t kTextureWrapS = 1;       ///< bits 1:0 of the wrap word: a Wrap
 inline constexpr uint32_t kTextureWrapTShift = 2;  ///< bits 3:2
 inline constexpr uint32_t kTextureNearest = 16;    ///< bit 4: no bilinear filter
 enum class Wrap : uint32_t { Repeat = 0, Clamp = 1, Mirror = 2 };
@@ -51,8 +51,9 @@ struct Resources {
   uint32_t width = 0, height = 0;               ///< of the picture, pixels
   uint32_t depth = 1;                           ///< of the deepest rays
   /// Address of what kernels keep of their threads, behind all else; 0: nothing. Value n of the kernel that a ray of
-  /// depth d has come to (an eye ray's own: 0) lies at saved + saved_stride() n + 4 ((d height + y) width + x): no other
-  /// kernel of the frame uses that place. Threads without a pixel share saved_pixels() behind them, which none reads.
+  /// depth d has come to (an eye ray's own: 0) lies at saved + saved_stride() n + 4 ((d height + y) width + x): no
+  /// other kernel of the frame uses that place. Threads without a pixel share saved_pixels() behind them, which none
+  /// reads.
   uint32_t saved = 0;
   uint64_t saved_pixels() const { return uint64_t{4} * width * height * (depth + 1); }
   uint64_t saved_stride() const { return saved_pixels() + 4; }

@@ -48,7 +48,8 @@ std::array<fs::path, kStages.size()> find_files(const fs::path& folder) {
          {std::pair(".rahit", "decide in the closest-hit shader, and trace on from behind the hit"),
           std::pair(".rint", "give the scene triangles"), std::pair(".rcall", "write a function")}) {
       if (ending == other)
-        throw InputError(fmt::format("{}: shaders of this stage are not supported: {}", entry.path().string(), instead));
+        throw InputError(
+            fmt::format("{}: shaders of this stage are not supported: {}", entry.path().string(), instead));
     }
     for (size_t i = 0; i < kStages.size(); ++i) {
       if (ending != kStages[i].ending) continue;
@@ -140,32 +141,35 @@ class Folder : public ShaderSet {
     EnumArray<RayKernel, kernel::Function, kRayKernels> functions;
     functions[RayKernel::CastEye] = lower(*modules[0], resources, RayKernel::CastEye, target, layout);
     if (!modules[2] && casts_shadow_rays(*modules[1])) {
-      throw InputError(fmt::format("{}: it traces shadow rays, and no miss shader takes those that meet nothing: add a "
-                                   "file with the ending .rmiss",
-                                   names_[1]));
+      throw InputError(
+          fmt::format("{}: it traces shadow rays, and no miss shader takes those that meet nothing: add a "
+                      "file with the ending .rmiss",
+                      names_[1]));
     }
     functions[RayKernel::CastSecondary] = lower(*modules[1], resources, RayKernel::CastSecondary, target, layout);
     functions[RayKernel::CastSecondaryDirect] =
         lower(*modules[1], resources, RayKernel::CastSecondaryDirect, target, layout);
     functions[RayKernel::Shade] =
         modules[2] ? lower(*modules[2], resources, RayKernel::Shade, target, layout)
-                   : kernel::record_kernel(std::string(kRayKernelNames[RayKernel::Shade]),
-                                           [](auto& k) { k.ray_in(); }, target, layout);
+                   : kernel::record_kernel(
+                         std::string(kRayKernelNames[RayKernel::Shade]), [](auto& k) { k.ray_in(); }, target, layout);
     return functions;
   }
 
  private:
   void check_picture(const Module& module, uint32_t type, const Binding& binding) const {
     if (!module.type(type).is_2d || module.type(module.type(type).element).kind != TypeKind::Float) {
-      throw InputError(fmt::format("{}: image '{}' is no image2D of floats, and there is but the picture to write: "
-                                   "declare it rgba32f image2D",
-                                   module.name(), binding.name));
+      throw InputError(
+          fmt::format("{}: image '{}' is no image2D of floats, and there is but the picture to write: "
+                      "declare it rgba32f image2D",
+                      module.name(), binding.name));
     }
     for (const Binding& other : bindings_) {
       if (other.kind != BindingKind::Picture || other.place == binding.place) continue;
-      throw InputError(fmt::format("{}: image '{}' is a second one beside '{}', and there is but one picture to write: "
-                                   "use one",
-                                   module.name(), binding.name, other.name));
+      throw InputError(
+          fmt::format("{}: image '{}' is a second one beside '{}', and there is but one picture to write: "
+                      "use one",
+                      module.name(), binding.name, other.name));
     }
   }
 

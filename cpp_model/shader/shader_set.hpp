@@ -20,8 +20,8 @@ namespace raypool::shader {
 /// What a binding of the set is declared as.
 enum class BindingKind : uint8_t { Tree, Picture, Block, Buffer, Textures };
 
-/// A member of a uniform block or of the push constants: scalars, vectors and matrices of floats or 32-bit integers, and
-/// arrays of them.
+/// A member of a uniform block or of the push constants: scalars, vectors and matrices of floats or 32-bit integers,
+/// and arrays of them.
 struct Member {
   std::string name;
   uint32_t offset = 0;  ///< bytes
@@ -41,7 +41,8 @@ struct Binding {
 /// Throws InputError, with file and line where they are known, for what cannot be done.
 class ShaderSet {
  public:
-  /// A folder, or the name of one in shaders/, with one .rgen, one .rchit and at most one .rmiss file, each in GLSL or as SPIR-V (.rgen.spv ...).
+  /// A folder, or the name of one in shaders/, with one .rgen, one .rchit and at most one .rmiss file, each in GLSL or
+  /// as SPIR-V (.rgen.spv ...).
   static std::shared_ptr<const ShaderSet> load(const std::string& folder);
   virtual ~ShaderSet() = default;
 
@@ -49,8 +50,8 @@ class ShaderSet {
   /// Those that a shader of the set uses, each once.
   virtual const std::vector<Binding>& bindings() const = 0;
   virtual const std::vector<Member>& push_constants() const = 0;
-  /// The ray kernels, not yet compiled. CastSecondaryDirect is the closest-hit shader without rays that go on. `layout`:
-  /// of the intersections that they import.
+  /// The ray kernels, not yet compiled. CastSecondaryDirect is the closest-hit shader without rays that go on.
+  /// `layout`: of the intersections that they import.
   virtual EnumArray<RayKernel, kernel::Function, kRayKernels> record(const Resources& resources,
                                                                      const KernelTarget& target,
                                                                      const RecordLayout& layout) const = 0;

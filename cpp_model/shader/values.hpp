@@ -50,9 +50,9 @@ struct Pointer {
   uint32_t variable = 0;  ///< Variable: its id
   uint32_t offset = 0;    ///< Variable: scalars; Memory, Words: bytes; Textures: elements
   std::vector<DynamicIndex> dynamic;
-  std::optional<Scalar> base;               ///< Memory: a register with an address, which the offset is added to
+  std::optional<Scalar> base;                ///< Memory: a register with an address, which the offset is added to
   const std::vector<Word>* words = nullptr;  ///< Words
-  uint32_t size = 0;                        ///< Memory: bytes behind `offset` 0; 0: not known
+  uint32_t size = 0;                         ///< Memory: bytes behind `offset` 0; 0: not known
   /// Of the vectors and matrices below, in bytes.
   uint32_t component_stride = 4, column_stride = 0;
 };

@@ -96,10 +96,10 @@ MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSe
   constexpr uint64_t kMostSaved = uint64_t{1} << 30;
   const uint64_t saved = resources.saved_stride() * static_cast<uint64_t>(record.kernels->slots);
   if (saved > kMostSaved) {
-    throw InputError(fmt::format("shaders {}: {} values that find no register need {} bytes of memory for {}x{} pixels "
-                                 "and depth {}, and may have {}: draw a smaller picture, or less deep",
-                                 set.folder(), record.kernels->slots, saved, record.width, record.height, record.depth,
-                                 kMostSaved));
+    throw InputError(
+        fmt::format("shaders {}: {} values that find no register need {} bytes of memory for {}x{} pixels "
+                    "and depth {}, and may have {}: draw a smaller picture, or less deep",
+                    set.folder(), record.kernels->slots, saved, record.width, record.height, record.depth, kMostSaved));
   }
   image.memory.grow(resources.saved + static_cast<uint32_t>((saved + 63) / 64 * 64));
   store_program(record.kernels->program, image.memory);

@@ -550,7 +550,8 @@ int sim_command(const SimOptions& options) {
     shaders = options.shader_source.load(options.shaders);
     record.shaders = options.shaders;
   }
-  const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look, !options.shaders.empty());
+  const Scene scene =
+      load_scene_and_warn(options.scene, options.detail, options.view, options.look, !options.shaders.empty());
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();

@@ -289,7 +289,8 @@ TEST_F(ShaderMemoryTest, AFileDescribesBuffersOfAnyLayout) {
     {"set": 1, "binding": 2, "holds": {"floats": [0.5, -2]}},
     {"set": 1, "binding": 3, "holds": {"integers": [7, -1, 4294967295]}},
     {"set": 1, "binding": 4, "holds": {"images": ["wood.png", "wood.png"], "srgb": false}},
-    {"set": 1, "binding": 5, "values": {"light": [1, 2, 3], "count": 9, "eye": "light_position", "grid": [[1, 2], [3, 4]]}},
+    {"set": 1, "binding": 5, "values": {"light": [1, 2, 3], "count": 9, "eye": "light_position",
+      "grid": [[1, 2], [3, 4]]}},
     {"set": 1, "binding": 6, "holds": "tree"}],
     "push_constants": {"scale": 2.5},
     "specialization": {"0": 4, "1": 0.5, "7": true, "8": -1}})");
