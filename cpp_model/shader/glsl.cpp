@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -79,6 +80,9 @@ std::string first_error(const std::string& output, const std::string& path) {
   while (std::getline(lines, line)) {
     if (line.rfind(mark, 0) != 0) continue;
     line = line.substr(mark.size());
+    // What has recursed stands in the line below.
+    if (std::string more; !line.empty() && line.back() == ':' && std::getline(lines, more))
+      line += " " + more.substr(std::min(more.size(), more.find_first_not_of(' ')));
     return line.rfind(path, 0) == 0 ? line : path + ": " + line;
   }
   std::istringstream again(output);

@@ -63,8 +63,9 @@ kernel::Function Lowering::run() {
     }
   }
   const uint32_t entry = module_.blocks().front().label;
-  where_ = {lasting(module_.name()), 1};
-  recorder_.set_place(where_);
+  // Messages name no line before that of an instruction.
+  where_ = {lasting(module_.name()), 0};
+  recorder_.set_place({where_.file, 1});
   if (kernel_ != RayKernel::CastEye) {
     k_.ray_in();
     pixel_ = of(k_.int_word(word::kPixel));

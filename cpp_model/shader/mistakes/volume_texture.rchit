@@ -7,8 +7,8 @@ layout(location = 0) rayPayloadInEXT vec3 color;
 layout(location = 1) rayPayloadEXT vec3 light;
 hitAttributeEXT RaypoolHit hit;
 
-layout(set = 1, binding = 0) uniform sampler3D smoke;  // here
+layout(set = 1, binding = 0) uniform sampler3D smoke;
 
 void main() {
-  light = textureLod(smoke, hit.normal, 0.0).rgb;
+  light = textureLod(smoke, hit.normal, 0.0).rgb;  // here
 }
