@@ -65,6 +65,9 @@ class Lowering {
   void declare_arms(size_t begin, int first_register, const Block& merge, const std::array<uint32_t, 2>& from);
   void unmerged_branch(const Block& block, uint32_t stop);
   void loop(const Block& header, uint32_t stop);
+  std::set<uint32_t> blocks_within(const Block& header, uint32_t stop) const;
+  void keep_beyond(const Block& header, uint32_t stop);
+  static std::vector<uint32_t> successors(const Block& block);
   void switch_over(const Block& header, uint32_t stop);
   /// Lanes of the mask go from one block to another: phis and masks.
   void edge(uint32_t from, uint32_t to);
@@ -82,6 +85,7 @@ class Lowering {
   Value get(uint32_t id);
   Scalar get_scalar(uint32_t id) { return get(id).at(0); }
   void set(const Line& line, Value value);
+  Scalar kept(uint32_t id, size_t number, const Scalar& scalar);
   int reg(const Scalar& scalar);
   int predicate(const Scalar& scalar);
   kernel::Condition condition(const Scalar& scalar);
@@ -200,6 +204,8 @@ class Lowering {
   std::unordered_map<uint32_t, Product> products_;  // multiplications that wait for the addition that takes them in
   std::unordered_map<uint32_t, std::pair<Scalar, bool>> images_;  // texture record's address; or the picture
   std::unordered_map<uint32_t, Value> phis_;                      // declared ones
+  std::unordered_map<uint32_t, Value>
+      kept_;                       // [id] variables for values that are read behind the loop they are made in
   std::map<uint32_t, int> reach_;  // of labels: predicate of the lanes that have gone there
   std::vector<uint32_t> open_;     // labels that lanes may go to early
   uint32_t current_ = 0;           // block whose lines are recorded, or were last

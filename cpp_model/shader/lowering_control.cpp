@@ -7,23 +7,28 @@ namespace raypool::shader {
 
 bool Lowering::is_open(uint32_t label) const { return std::find(open_.begin(), open_.end(), label) != open_.end(); }
 
+std::vector<uint32_t> Lowering::successors(const Block& block) {
+  const std::vector<uint32_t>& operands = block.end.operands;
+  switch (block.end.op) {
+    case spv::Op::OpBranch:
+      return {operands.at(0)};
+    case spv::Op::OpBranchConditional:
+      return {operands.at(1), operands.at(2)};
+    case spv::Op::OpSwitch: {
+      std::vector<uint32_t> labels;
+      for (size_t i = 1; i < operands.size(); i += 2) labels.push_back(operands[i]);
+      return labels;
+    }
+    default:
+      return {};
+  }
+}
+
 size_t Lowering::predecessors(uint32_t label) const {
   size_t count = 0;
   for (const Block& block : module_.blocks()) {
-    const std::vector<uint32_t>& operands = block.end.operands;
-    switch (block.end.op) {
-      case spv::Op::OpBranch:
-        count += operands.at(0) == label ? 1 : 0;
-        break;
-      case spv::Op::OpBranchConditional:
-        count += (operands.at(1) == label ? 1 : 0) + (operands.at(2) == label ? 1 : 0);
-        break;
-      case spv::Op::OpSwitch:
-        for (size_t i = 1; i < operands.size(); i += 2) count += operands[i] == label ? 1 : 0;
-        break;
-      default:
-        break;
-    }
+    const std::vector<uint32_t> labels = successors(block);
+    count += static_cast<size_t>(std::count(labels.begin(), labels.end(), label));
   }
   return count;
 }
@@ -190,6 +195,8 @@ Lowering::Way Lowering::joined(const std::optional<Way>& a, const Way& b) {
 
 void Lowering::lines(const Block& block) {
   current_ = block.label;
+  for (const Line& phi : block.phis)
+    if (kept_.count(phi.id) != 0) set(phi, get(phi.id));
   for (const Line& line : block.lines) {
     where_ = line.where;
     recorder_.set_place(where_);
@@ -410,7 +417,58 @@ void Lowering::unmerged_branch(const Block& block, uint32_t stop) {
   way_ = *after;
 }
 
+/// The blocks that are recorded in the loop.
+std::set<uint32_t> Lowering::blocks_within(const Block& header, uint32_t stop) const {
+  std::set<uint32_t> within;
+  std::vector<uint32_t> found = {header.label};
+  while (!found.empty()) {
+    const uint32_t label = found.back();
+    found.pop_back();
+    const bool ends = label == stop || label == header.merge || is_open(label) || reach_.count(label) != 0;
+    if ((ends && label != header.label) || !within.insert(label).second) continue;
+    for (const uint32_t next : successors(module_.block(label))) found.push_back(next);
+  }
+  return within;
+}
+
+/// Lanes that have left a loop go without a value that its later rounds compute: whoever reads it behind the loop finds
+/// it in a variable.
+void Lowering::keep_beyond(const Block& header, uint32_t stop) {
+  const std::set<uint32_t> within = blocks_within(header, stop);
+  std::set<uint32_t> read;  // outside
+  for (const Block& block : module_.blocks()) {
+    if (within.count(block.label) != 0) continue;
+    for (const Line& phi : block.phis)
+      for (size_t i = 0; i + 1 < phi.operands.size(); i += 2)
+        if (within.count(phi.operands[i + 1]) == 0) read.insert(phi.operands[i]);
+    for (const Line& line : block.lines) read.insert(line.operands.begin(), line.operands.end());
+    read.insert(block.end.operands.begin(), block.end.operands.end());
+  }
+  const auto keep_one = [&](const Line& line) {
+    const bool is_new = line.type != 0 && read.count(line.id) != 0 && kept_.count(line.id) == 0;
+    if (!is_new) return false;
+    Value& variable = kept_[line.id];
+    const uint32_t size = module_.scalars(line.type);
+    for (uint32_t i = 0; i < size; ++i) variable.push_back(declare(is_condition(line.type, i)));
+    if (size != 0) return true;
+    // A pointer or an image: what it is made of, or an address that is loaded.
+    read.insert(line.operands.begin(), line.operands.end());
+    variable.push_back(declare(false));
+    return true;
+  };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const uint32_t label : within) {
+      const Block& block = module_.block(label);
+      if (label != header.label)
+        for (const Line& phi : block.phis) changed |= keep_one(phi);
+      for (const Line& line : block.lines) changed |= keep_one(line);
+    }
+  }
+}
+
 void Lowering::loop(const Block& header, uint32_t stop) {
+  keep_beyond(header, stop);
   const Flow whole = flow_of_loop(header);
   const bool leaves = !whole.leaves.empty();
   const bool shared = predecessors(header.continues) > 1 && header.continues != header.label;

@@ -217,7 +217,7 @@ void Lowering::load(const Line& line) {
     Scalar record = Scalar::constant(pointer.offset);
     for (const DynamicIndex& part : pointer.dynamic)
       record = binary(Opcode::Iadd, scaled(part.index, part.stride), record);
-    images_[line.id] = {record, false};
+    images_[line.id] = {kept(line.id, 0, record), false};
     return;
   }
   if (module_.type(line.type).kind == TypeKind::Pointer) {
@@ -233,6 +233,7 @@ void Lowering::load(const Line& line) {
     } else {
       fail("an address that is kept in a variable is not supported: keep its uvec2");
     }
+    target.base = kept(line.id, 0, *target.base);
     pointers_[line.id] = target;
     return;
   }

@@ -22,7 +22,18 @@ Value Lowering::get(uint32_t id) {
   return found->second;
 }
 
-void Lowering::set(const Line& line, Value value) { values_[line.id] = std::move(value); }
+void Lowering::set(const Line& line, Value value) {
+  for (size_t i = 0; i < value.size(); ++i) value[i] = kept(line.id, i, value[i]);
+  values_[line.id] = std::move(value);
+}
+
+/// A scalar of a value, in its variable if it has one.
+Scalar Lowering::kept(uint32_t id, size_t number, const Scalar& scalar) {
+  const auto variables = kept_.find(id);
+  if (variables == kept_.end() || scalar.is_constant() || scalar.is_undefined()) return scalar;
+  assign(variables->second.at(number), scalar);
+  return variables->second.at(number);
+}
 
 int Lowering::reg(const Scalar& scalar) {
   switch (scalar.kind) {

@@ -950,6 +950,27 @@ State next(State state, int v) {
   payload = uvec3(a, b, c);
   if (c > 3) traceRayEXT(tree, gl_RayFlagsOpaqueEXT, 0xff, 0, 0, 0, vec3(1.0), 0.0, vec3(x, y, 1.0), 1e30, 0);
   s = r + a;)"},
+    {"ValuesOfLoopsReadBehindThem", "",
+     R"(bool big, odd = false;
+  int i = 0, both;
+  vec2 scaled;
+  while (true) {
+    big = i * a > 6;
+    odd = ((i ^ b) & 1) == 1;
+    both = i * 5 + b;
+    scaled = vec2(x, y) * float(i);
+    if (i * 3 > c) break;
+    for (int j = 0;; ++j) {
+      both += j;
+      odd = odd != (j > a);
+      if (j * 2 > b) break;
+    }
+    if (both > 40 && odd) break;
+    ++i;
+  }
+  if (big) r = both + i;
+  s = (odd ? 100 : 200) + i;
+  t = scaled.x - scaled.y;)"},
     {"ConditionsOfWholeVectors", "",
      R"(ivec3 v = ivec3(a, b, c);
   bvec3 above = greaterThan(v, v.yzx);
