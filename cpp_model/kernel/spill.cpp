@@ -488,6 +488,47 @@ class Spiller {
   std::vector<std::vector<Op>> before_, behind_;   // [op] what is put there
 };
 
+/// Where code jumps over what writes a register, lanes hold nothing in it before: says so, in front of the outermost
+/// jump or loop around its first write, for registers that would be held from the kernel's first op on.
+void declare_late(Function& function) {
+  const std::vector<Op>& ops = function.ops;
+  std::vector<size_t> outermost(ops.size());
+  size_t end = 0, begin = 0;
+  for (size_t i = 0; i < ops.size(); ++i) {
+    if (i >= end && (is(ops[i], Opcode::Jnone) || is(ops[i], Opcode::Loop))) {
+      begin = i;
+      for (end = i + 1; end < ops.size() && !(ops[end].kind != Op::Kind::Instruction &&
+                                              ops[end].kind != Op::Kind::Undefined && ops[end].label == ops[i].label);)
+        ++end;
+    }
+    outermost[i] = i < end ? begin : i;
+  }
+  // Behind the first op: what it defines has a place of its own.
+  NumberSet held = find_liveness(function).registers_after.front();
+  if (const int first = effects(ops.front()).register_defined; first != kNothing) held.erase(first);
+  std::vector<std::vector<Op>> declared(ops.size());
+  for (size_t i = 0; i < ops.size(); ++i) {
+    const Effects effect = effects(ops[i]);
+    for (int e = 0; e < effect.registers_defined; ++e) {
+      const int number = effect.register_defined + e;
+      if (!held.has(number)) continue;
+      held.erase(number);
+      Op op;
+      op.kind = Op::Kind::Undefined;
+      op.rd = number;
+      op.fresh = true;
+      op.where = ops[i].where;
+      declared[outermost[i]].push_back(op);
+    }
+  }
+  std::vector<Op> whole;
+  for (size_t i = 0; i < ops.size(); ++i) {
+    whole.insert(whole.end(), declared[i].begin(), declared[i].end());
+    whole.push_back(ops[i]);
+  }
+  function.ops = std::move(whole);
+}
+
 /// Stores of values that never come back from there.
 void remove_unneeded_stores(Function& function) {
   for (bool changed = true; changed;) {
@@ -511,6 +552,7 @@ bool spill(Function& function, SpillCounts& counts) {
   remove_dead(function);
   // What has become of conditions are values like others.
   for (Op& op : function.ops) op.spill = Spill::None;
+  declare_late(function);
   if (!Spiller(function, false, counts).run()) return false;
   function.spill_memory.reset();
   remove_dead(function);
