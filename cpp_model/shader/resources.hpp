@@ -56,7 +56,8 @@ struct Resources {
   /// reads.
   uint32_t saved = 0;
   uint64_t saved_pixels() const { return uint64_t{4} * width * height * (depth + 1); }
-  uint64_t saved_stride() const { return saved_pixels() + 4; }
+  /// Whole lines, so that a warp's values lie in as few as can be.
+  uint64_t saved_stride() const { return (saved_pixels() + 127) / 64 * 64; }
 };
 
 }  // namespace raypool::shader
