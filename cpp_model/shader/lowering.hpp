@@ -67,7 +67,6 @@ class Lowering {
   void loop(const Block& header, uint32_t stop);
   std::set<uint32_t> blocks_within(const Block& header, uint32_t stop) const;
   void keep_beyond(const Block& header, uint32_t stop);
-  static std::vector<uint32_t> successors(const Block& block);
   void switch_over(const Block& header, uint32_t stop);
   /// Lanes of the mask go from one block to another: phis and masks.
   void edge(uint32_t from, uint32_t to);

@@ -5,9 +5,9 @@
 
 namespace raypool::shader {
 
-bool Lowering::is_open(uint32_t label) const { return std::find(open_.begin(), open_.end(), label) != open_.end(); }
+namespace {
 
-std::vector<uint32_t> Lowering::successors(const Block& block) {
+std::vector<uint32_t> successors(const Block& block) {
   const std::vector<uint32_t>& operands = block.end.operands;
   switch (block.end.op) {
     case spv::Op::OpBranch:
@@ -24,6 +24,10 @@ std::vector<uint32_t> Lowering::successors(const Block& block) {
   }
 }
 
+}  // namespace
+
+bool Lowering::is_open(uint32_t label) const { return std::find(open_.begin(), open_.end(), label) != open_.end(); }
+
 size_t Lowering::predecessors(uint32_t label) const {
   size_t count = 0;
   for (const Block& block : module_.blocks()) {
@@ -35,13 +39,39 @@ size_t Lowering::predecessors(uint32_t label) const {
 
 namespace {
 
-/// Labels of a switch in the order of their blocks, and the values of each; the default's are left out.
+/// A label of a switch and its values; the default's are left out.
 struct Case {
   uint32_t label = 0;
   std::vector<uint32_t> literals;
   bool is_default = false;
 };
 
+/// The cases that lanes of a case fall into, at most.
+std::set<uint32_t> falls_into(const Module& module, const Block& header, const Case& from,
+                              const std::vector<Case>& cases) {
+  const auto is_case = [&](uint32_t label) {
+    return std::any_of(cases.begin(), cases.end(), [&](const Case& one) { return one.label == label; });
+  };
+  std::set<uint32_t> entered, seen;
+  std::vector<uint32_t> found = {from.label};
+  while (!found.empty()) {
+    const uint32_t label = found.back();
+    found.pop_back();
+    // Outside the switch only its header leads to its cases.
+    if (label == header.merge || label == header.label || !seen.insert(label).second) continue;
+    for (const uint32_t next : successors(module.block(label))) {
+      if (is_case(next))
+        entered.insert(next);
+      else
+        found.push_back(next);
+    }
+  }
+  entered.erase(header.merge);
+  entered.erase(from.label);
+  return entered;
+}
+
+/// In the order of their blocks, but each behind those that fall into it.
 std::vector<Case> cases_of(const Module& module, const Block& header) {
   std::vector<Case> cases;
   const auto entry = [&](uint32_t label) -> Case& {
@@ -55,7 +85,24 @@ std::vector<Case> cases_of(const Module& module, const Block& header) {
   for (size_t i = 2; i + 1 < operands.size(); i += 2) entry(operands[i + 1]).literals.push_back(operands[i]);
   std::stable_sort(cases.begin(), cases.end(),
                    [&](const Case& a, const Case& b) { return &module.block(a.label) < &module.block(b.label); });
-  return cases;
+  std::vector<std::set<uint32_t>> entered;
+  for (const Case& one : cases) entered.push_back(falls_into(module, header, one, cases));
+  std::vector<Case> ordered;
+  std::vector<bool> placed(cases.size(), false);
+  const auto waits = [&](uint32_t label) {
+    for (size_t i = 0; i < cases.size(); ++i)
+      if (!placed[i] && entered[i].count(label) != 0) return true;
+    return false;
+  };
+  while (ordered.size() < cases.size()) {
+    size_t next = 0;
+    while (next < cases.size() && (placed[next] || waits(cases[next].label))) ++next;
+    if (next == cases.size())
+      module.fail(header.end.where, "the SPIR-V has cases that fall into each other: make it again");
+    placed[next] = true;
+    ordered.push_back(cases[next]);
+  }
+  return ordered;
 }
 
 template <typename Set>

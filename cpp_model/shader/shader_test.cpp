@@ -971,6 +971,21 @@ State next(State state, int v) {
   if (big) r = both + i;
   s = (odd ? 100 : 200) + i;
   t = scaled.x - scaled.y;)"},
+    {"CaseThatFallsIntoALoop", "",
+     R"(vec2 bound = vec2(float(b));
+  switch (a & 3) {
+    case 1:
+      bound.y = float(c);
+    default: {
+      int i = 0;
+      while (i++ < 3 && 2.5 < bound.y) {
+        r += i;
+        bound.y -= 1.0;
+      }
+    }
+  }
+  s = r * 2;
+  t = bound.y;)"},
     {"ConditionsOfWholeVectors", "",
      R"(ivec3 v = ivec3(a, b, c);
   bvec3 above = greaterThan(v, v.yzx);
