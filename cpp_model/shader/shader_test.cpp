@@ -296,6 +296,7 @@ kernel::Function with_spill_memory(kernel::Function function) {
 }
 
 /// One kernel of a shader: its SPIR-V, its intermediate code and its machine code leave the same.
+// NOLINTNEXTLINE(readability-function-size): three runs side by side
 void compare(const Module& module, RayKernel kernel, World& world, uint32_t warps, Outcome& outcome,
              const std::function<void(Intersection&)>& change = nullptr) {
   SCOPED_TRACE(fmt::format("{} of {}", kRayKernelNames[kernel], module.name()));

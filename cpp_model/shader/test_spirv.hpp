@@ -130,6 +130,7 @@ class SpirvThread {
     }
   }
 
+  // NOLINTNEXTLINE(readability-function-size): a list
   void variables() {
     for (const auto& [id, variable] : module_.variables()) {
       const shader::Type& pointer = module_.type(variable.type);
@@ -539,6 +540,7 @@ class SpirvThread {
 
   // ---- instructions
 
+  // NOLINTNEXTLINE(readability-function-size): a list
   void execute(const shader::Line& line) {
     const std::vector<uint32_t>& o = line.operands;
     const auto f2 = [&](uint32_t (*function)(uint32_t, uint32_t, arith::Mode)) {
@@ -809,6 +811,7 @@ class SpirvThread {
     }
   }
 
+  // NOLINTNEXTLINE(readability-function-size): a list
   void composite(const shader::Line& line) {
     const std::vector<uint32_t>& o = line.operands;
     /// Offset and type of what literal indices name, from operand `first` on.
@@ -991,6 +994,7 @@ class SpirvThread {
     values_[line.id].words = std::move(words);
   }
 
+  // NOLINTNEXTLINE(readability-function-size): a list
   void glsl(const shader::Line& line) {
     namespace math = shader::math;
     using K = Native;
