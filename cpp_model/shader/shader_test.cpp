@@ -54,7 +54,7 @@ class Scratch {
   }
   Scratch(const Scratch&) = delete;
   std::string write(const std::string& name, const std::string& text) const {
-    const std::string path = (path_ / name).string();
+    std::string path = (path_ / name).string();
     std::ofstream(path) << text;
     return path;
   }
