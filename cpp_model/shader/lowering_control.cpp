@@ -478,8 +478,8 @@ std::set<uint32_t> Lowering::blocks_within(const Block& header, uint32_t stop) c
   return within;
 }
 
-/// Lanes that have left a loop go without a value that its later rounds compute: whoever reads it behind the loop finds
-/// it in a variable.
+/// Lanes that have left a loop go without a value that its later rounds compute: code behind the loop reads it from a
+/// variable, which keeps theirs.
 void Lowering::keep_beyond(const Block& header, uint32_t stop) {
   const std::set<uint32_t> within = blocks_within(header, stop);
   std::set<uint32_t> read;  // outside
