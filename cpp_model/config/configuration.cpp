@@ -428,6 +428,12 @@ void check_chip(const Configuration& configuration, const std::string& where) {
                     "{}, which is chip.intersection_pool.size",
                     where, chip.held_limit, width, configuration.contents(), chip.intersection_pool_size));
   }
+  if (chip.miss_records && chip.culling) {
+    throw InputError(
+        fmt::format("{}: chip.miss_records and chip.culling are both true, but culling drops rays that would have to "
+                    "return: set one of them to false",
+                    where));
+  }
   if (chip.traverser == TraverserName::Hardware) check_hardware_traverser(chip, where);
 }
 

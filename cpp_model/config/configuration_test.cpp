@@ -167,6 +167,13 @@ TEST(Configuration, TheChipHoldsAsManyPixelsAsTheIntersectionPoolUnlessToldOther
             "chip.intersection_pool.size is 31; with 1024 contents it must be at least 32, the width of a tile");
 }
 
+TEST(Configuration, RefusesCullingOfRaysThatReturn) {
+  EXPECT_TRUE(load_configuration("4w4c", {"chip.miss_records=true"}).chip.miss_records);
+  EXPECT_EQ(error_of(R"({"chip": {"miss_records": true, "culling": true}})"),
+            "chip.miss_records and chip.culling are both true, but culling drops rays that would have to return: set "
+            "one of them to false");
+}
+
 TEST(Configuration, ATraverserInHardwareHasSizesThatItsModulesCanHave) {
   const auto chip = [](const std::string& traverser, const std::string& sizes) {
     return R"({"chip": {"traverser": ")" + traverser + R"(", "hardware_traverser": {)" + sizes + "}}}";

@@ -80,6 +80,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
        "what adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
   CHIP(reflections, bool, true, on_or_off(), "there is a kernel that casts reflections; without it a frame has none") \
   CHIP(culling, bool, false, on_or_off(), "rays that cannot add to the picture are left out") \
+  CHIP(miss_records, bool, false, on_or_off(), \
+       "a ray with the flag `returns` comes back as a package even if it meets nothing") \
   CHIP_PART(thresholds, rays, uint32_t, 48, integers(0, 1 << 20), \
             "rays in the ray pool above which no more are cast, for 64 contents and one unit") \
   CHIP_PART(thresholds, intersections, uint32_t, 8, integers(0, 1 << 20), \

@@ -41,7 +41,8 @@ inline constexpr RecordField kTriangleFields[] = {{"corners", 288}, {"number", 3
 inline constexpr RecordField kNodeFields[] = {{"grid", 96},  {"step", 24},  {"children", 8},
                                               {"lower", 96}, {"upper", 96}, {"references", 128}};
 inline constexpr RecordField kRayFields[] = {{"origin", 96}, {"direction", 96}, {"limit", 32},  {"pixel", 32},
-                                             {"color", 96},  {"depth", 8},      {"unused", 23}, {"shadow", 1}};
+                                             {"color", 96},  {"depth", 8},      {"unused", 20}, {"met", 1},
+                                             {"first", 1},   {"returns", 1},    {"shadow", 1}};
 
 template <int N>
 constexpr Record record(std::string_view name, std::string_view meaning, const RecordField (&fields)[N]) {

@@ -115,6 +115,11 @@ module rp_chip #(
 );
   localparam integer RAY_BITS = $clog2(RAY_POOL_SIZE + 1);
   localparam integer LEVEL_BITS = $clog2(INTERSECTION_POOL_SIZE + 1);
+  generate
+    if (MISS_RECORDS < 0 || MISS_RECORDS > 1 || (MISS_RECORDS != 0 && CULLING != 0)) begin : gen_bad_miss_records
+      chip_MISS_RECORDS_must_be_0_or_1_and_0_with_CULLING_which_drops_rays_that_would_return illegal ();
+    end
+  endgenerate
 
   // ---- Between two frames: all that waits or is on its way has gone, and the traverser asks for nothing more. The
   // reset drops the prefetches of the frame before: no line comes back for a request of that frame.

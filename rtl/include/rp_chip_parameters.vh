@@ -8,6 +8,7 @@
   parameter integer TILE_ORDER = 0,
   parameter integer SHADING = 0,
   parameter integer CULLING = 0,
+  parameter integer MISS_RECORDS = 0,
   parameter integer THRESHOLDS_RAYS = 48,
   parameter integer THRESHOLDS_INTERSECTIONS = 8,
   parameter integer STATIC_TRAVERSER_BATCH = 64,

@@ -40,6 +40,9 @@
   localparam integer RAY_PIXEL = 224, RAY_PIXEL_BITS = 32;
   localparam integer RAY_COLOR = 256, RAY_COLOR_BITS = 96;
   localparam integer RAY_DEPTH = 352, RAY_DEPTH_BITS = 8;
-  localparam integer RAY_UNUSED = 360, RAY_UNUSED_BITS = 23;
+  localparam integer RAY_UNUSED = 360, RAY_UNUSED_BITS = 20;
+  localparam integer RAY_MET = 380, RAY_MET_BITS = 1;
+  localparam integer RAY_FIRST = 381, RAY_FIRST_BITS = 1;
+  localparam integer RAY_RETURNS = 382, RAY_RETURNS_BITS = 1;
   localparam integer RAY_SHADOW = 383, RAY_SHADOW_BITS = 1;
   /* verilator lint_on UNUSEDPARAM */

@@ -23,7 +23,7 @@ inline constexpr int kDirection = 3;     ///< x, y, z, not normalised
 inline constexpr int kLimit = 6;         ///< largest t: infinity, or 1 for a shadow ray
 inline constexpr int kPixel = 7;         ///< x in bits 15:0, y in bits 31:16
 inline constexpr int kColor = 8;         ///< red, green, blue: throughput (normal ray) or contribution (shadow ray)
-inline constexpr int kFlags = 11;        ///< kShadowFlag, depth in bits 7:0 (an eye ray has 1)
+inline constexpr int kFlags = 11;        ///< the flags below, depth in bits 7:0 (an eye ray has 1)
 inline constexpr int kDistance = 12;     ///< t of the hit
 inline constexpr int kBarycentric = 13;  ///< u, v
 inline constexpr int kNormal = 15;       ///< unit geometric normal, as wound
@@ -32,6 +32,10 @@ inline constexpr int kTriangle = 19;     ///< triangle index
 }  // namespace word
 
 inline constexpr uint32_t kShadowFlag = 0x80000000u;
+// With chip.miss_records, of rays that are no shadow rays; without it these bits are the kernels' own.
+inline constexpr uint32_t kReturnsFlag = 0x40000000u;  ///< it comes back as a package even if it meets nothing
+inline constexpr uint32_t kFirstFlag = 0x20000000u;    ///< any hit ends such a ray, and its package carries none
+inline constexpr uint32_t kMetFlag = 0x10000000u;      ///< in the package of such a ray: it has met something
 inline constexpr uint32_t kDepthMask = 0xffu;
 
 using Ray = std::array<uint32_t, kRayWords>;
