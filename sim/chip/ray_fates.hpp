@@ -10,8 +10,6 @@
 
 namespace raypool::chip {
 
-inline bool is_shadow(const Ray& ray) { return (ray[word::kFlags] & kShadowFlag) != 0; }
-
 class RayFates {
  public:
   /// `depth`: the largest of a normal ray. `reflections`: normal intersections are given to a kernel that casts some.
@@ -25,8 +23,9 @@ class RayFates {
   /// Direct: with culling, a hit with a reflection that could not add to the picture.
   ImportKind kind_of(const Ray& ray, const Intersection& intersection) const {
     if (is_shadow(ray)) return ImportKind::Shadow;
+    if (!sorts_) return ImportKind::Normal;  // perhaps of a ray that has returned, which has no material
     const bool reflects = (ray[word::kFlags] & kDepthMask) < depth_ && tracer_.reflects(intersection);
-    return sorts_ && !reflects ? ImportKind::Direct : ImportKind::Normal;
+    return reflects ? ImportKind::Normal : ImportKind::Direct;
   }
   /// Shadow rays that reach the light leave contributions in place of intersections.
   bool contributes(ImportKind kind) const { return kind == ImportKind::Shadow && contributes_; }

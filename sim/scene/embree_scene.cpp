@@ -65,16 +65,13 @@ bool EmbreeScene::occluded(const RayQuery& query) const {
 }
 
 bool EmbreeTracer::trace(const Ray& ray, Intersection& intersection) const {
-  const RayQuery query = to_query(ray);
-  if ((ray[word::kFlags] & kShadowFlag) != 0) {
-    tracer_.pass_on(ray, intersection);
-    return !embree_.occluded(query);
-  }
-  Hit hit;
-  if (!embree_.nearest(query, hit)) return false;
-  hit.normal = scene_.normal(hit.triangle);
-  tracer_.meet(ray, hit, intersection);
-  return true;
+  return tracer_.answer(
+      ray, intersection, [&](const RayQuery& query) { return embree_.occluded(query); },
+      [&](const RayQuery& query, Hit& hit) {
+        const bool met = embree_.nearest(query, hit);
+        if (met) hit.normal = scene_.normal(hit.triangle);
+        return met;
+      });
 }
 
 }  // namespace raypool

@@ -86,7 +86,7 @@ class Worker {
   }
 
   void follow(const Ray& ray) {
-    const bool shadow = (ray[word::kFlags] & kShadowFlag) != 0;
+    const bool shadow = is_shadow(ray);
     const uint32_t depth = ray[word::kFlags] & kDepthMask;
     if (!shadow && depth > options_.depth) {
       ++statistics.dropped_rays;

@@ -28,9 +28,8 @@ void add(RayCounts::Kind& sum, const RayCounts::Kind& part) {
 }  // namespace
 
 void RayCounts::count(const Ray& ray, bool goes_on) {
-  const bool is_shadow = (ray[word::kFlags] & kShadowFlag) != 0;
-  const bool without = weightless(ray, is_shadow);
-  Kind& kind = is_shadow ? shadow : (ray[word::kFlags] & kDepthMask) == 1 ? eye : reflection;
+  const bool without = weightless(ray, is_shadow(ray));
+  Kind& kind = is_shadow(ray) ? shadow : (ray[word::kFlags] & kDepthMask) == 1 ? eye : reflection;
   ++kind.traced;
   kind.ended += !goes_on;
   kind.weightless += without;

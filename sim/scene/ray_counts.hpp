@@ -11,7 +11,7 @@ namespace raypool {
 struct RayCounts {
   struct Kind {
     uint64_t traced = 0;
-    uint64_t ended = 0;       ///< traced, and hit nothing; shadow rays: are blocked
+    uint64_t ended = 0;       ///< traced, and hit nothing, and did not return; shadow rays: are blocked
     uint64_t weightless = 0;  ///< traced, though nothing that they find can change the picture
     uint64_t futile = 0;      ///< ended or weightless or both: added nothing to the picture
     uint64_t left_out = 0;    ///< not traced, because of chip.culling

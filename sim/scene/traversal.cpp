@@ -295,8 +295,7 @@ void Tracer::pass_on(const Ray& ray, Intersection& intersection) {
   std::copy(ray.begin(), ray.end(), intersection.begin());
 }
 
-void Tracer::meet(const Ray& ray, const Hit& hit, Intersection& intersection) const {
-  pass_on(ray, intersection);
+void Tracer::meet(const Hit& hit, Intersection& intersection) const {
   intersection[word::kDistance] = as_bits(hit.t);
   intersection[word::kBarycentric] = as_bits(hit.u);
   intersection[word::kBarycentric + 1] = as_bits(hit.v);
@@ -307,15 +306,9 @@ void Tracer::meet(const Ray& ray, const Hit& hit, Intersection& intersection) co
 
 template <typename... Told>
 bool Tracer::trace_and_tell(const Ray& ray, Intersection& intersection, Told&&... told) const {
-  const RayQuery query = to_query(ray);
-  if ((ray[word::kFlags] & kShadowFlag) != 0) {
-    pass_on(ray, intersection);
-    return !traversal_.occluded(query, told...);
-  }
-  Hit hit;
-  if (!traversal_.nearest(query, hit, told...)) return false;
-  meet(ray, hit, intersection);
-  return true;
+  return answer(
+      ray, intersection, [&](const RayQuery& query) { return traversal_.occluded(query, told...); },
+      [&](const RayQuery& query, Hit& hit) { return traversal_.nearest(query, hit, told...); });
 }
 
 bool Tracer::trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts, VisitList* visits) const {

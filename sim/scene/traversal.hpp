@@ -106,6 +106,9 @@ class Traversal {
   bool hardware_hits_ = false;
 };
 
+/// Words 0 .. 6 of a ray.
+RayQuery to_query(const Ray& ray);
+
 /// The traverser of the chip and of the native renderer: packages in, packages out. Safe to use from several threads.
 class Tracer {
  public:
@@ -115,7 +118,9 @@ class Tracer {
   Tracer(const Scene& scene, uint32_t material_base, const ChipConfiguration& chip);
 
   /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked;
-  /// true when it is free, with words 12 .. 20 of the intersection zero. Words 0 .. 11 are the ray's.
+  /// true when it is free, with words 12 .. 20 of the intersection zero. Words 0 .. 11 are the ray's. A ray that
+  /// returns: true, and its flags say whether it has met something; words 12 .. 20 are zero if not, or if any hit would
+  /// do.
   bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr,
              VisitList* visits = nullptr) const;
 
@@ -124,8 +129,24 @@ class Tracer {
 
   /// Words 0 .. 11 are the ray's, the others zero.
   static void pass_on(const Ray& ray, Intersection& intersection);
-  /// What a hit of the ray becomes.
-  void meet(const Ray& ray, const Hit& hit, Intersection& intersection) const;
+
+  /// trace() with the answers of `occluded` and `nearest`, of which one is called.
+  template <typename Occluded, typename Nearest>
+  bool answer(const Ray& ray, Intersection& intersection, const Occluded& occluded, const Nearest& nearest) const {
+    const bool returning = miss_records_ && returns(ray);
+    bool met = false;
+    pass_on(ray, intersection);
+    if (is_shadow(ray) || (returning && returns_first(ray))) {
+      met = occluded(to_query(ray));
+    } else {
+      Hit hit;
+      met = nearest(to_query(ray), hit);
+      if (met) meet(hit, intersection);
+    }
+    if (!returning) return met != is_shadow(ray);
+    set_met(intersection, met);
+    return true;
+  }
 
   /// Whether the material of this word of an intersection reflects. Throws std::out_of_range if it is no material's:
   /// what a ray that hits nothing leaves is no intersection.
@@ -133,19 +154,23 @@ class Tracer {
 
   const Traversal& traversal() const { return traversal_; }
   void set_triangle_test(const TriangleTest& test) { traversal_.set_triangle_test(test); }
-  void take_hits_of(const ChipConfiguration& chip) { traversal_.take_hits_of(chip); }
+  /// And rays that return, if the chip has them.
+  void take_hits_of(const ChipConfiguration& chip) {
+    traversal_.take_hits_of(chip);
+    miss_records_ = chip.miss_records;
+  }
 
  private:
   template <typename... Told>
   bool trace_and_tell(const Ray& ray, Intersection& intersection, Told&&... told) const;
+  /// Words 12 .. 20 are those of the hit.
+  void meet(const Hit& hit, Intersection& intersection) const;
 
   Traversal traversal_;
   uint32_t material_base_;
   std::vector<uint32_t> material_words_;  ///< one a triangle
   std::vector<bool> reflecting_;          ///< one a material
+  bool miss_records_ = false;             ///< chip.miss_records
 };
-
-/// Words 0 .. 6 of a ray.
-RayQuery to_query(const Ray& ray);
 
 }  // namespace raypool

@@ -42,6 +42,16 @@ using Ray = std::array<uint32_t, kRayWords>;
 using Intersection = std::array<uint32_t, kIntersectionWords>;
 using Beat = std::array<uint32_t, kBeatWords>;
 
+inline bool is_shadow(const Ray& ray) { return (ray[word::kFlags] & kShadowFlag) != 0; }
+/// Of a chip with miss_records.
+inline bool returns(const Ray& ray) { return (ray[word::kFlags] & (kShadowFlag | kReturnsFlag)) == kReturnsFlag; }
+/// A ray that returns, and any hit ends it.
+inline bool returns_first(const Ray& ray) { return returns(ray) && (ray[word::kFlags] & kFirstFlag) != 0; }
+/// The package of a ray that returns says whether it has met something, whatever the ray had there.
+inline void set_met(Intersection& package, bool met) {
+  package[word::kFlags] = (package[word::kFlags] & ~kMetFlag) | (met ? kMetFlag : 0);
+}
+
 /// How an intersection travels, and lies in ray memory: whole, or as a compact record, which has the words that kernels
 /// need.
 struct RecordLayout {
