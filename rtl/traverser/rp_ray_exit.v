@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // What becomes of rays that have visited everything. A normal ray that has hit nothing, and a shadow ray that has met
 // something, frees its place; a shadow ray that has not leaves a contribution, with SHADING, or a package. A hit is
-// finished: its triangle is read through the triangle cache and rp_ray_finish.v computes what the package carries. What
-// a ray came with, and its hit, lie by its place in the ray pool until the package leaves; so its slot in the lane is
-// free at once, and rays that wait for room in the intersection pool hold up no others. Promises: each ray that is done
+// finished: its triangle is read through the triangle cache and rp_ray_finish.v computes what the package carries. With
+// MISS_RECORDS a ray that returns leaves a package in every case, a plain one without a hit if it has met nothing or
+// any hit would do. What a ray came with, and its hit, lie by its place in the ray pool until the package leaves; so
+// its slot in the lane is free at once, and rays that wait for room in the intersection pool hold up no others, but
+// plain packages wait while a hit has been finished. Promises: each ray that is done
 // frees its place once, when what it has become has left; packages of a kind leave in the order in which they were
 // finished; a kind is begun only when there is room for it; no output depends on an input of the same cycle but
 // done_ready_o and slot_free_*, which depend on done_valid_i alone. Must be given: a ray's words and its set-up before
@@ -17,6 +19,7 @@ module rp_ray_exit #(
   parameter integer RECORD_WORDS = 21,           // of a package
   parameter integer SHADING = 0,
   parameter integer CULLING = 0,
+  parameter integer MISS_RECORDS = 0,            // not with CULLING
   parameter integer KINDS = 2 + CULLING,
   parameter integer PLACE_BITS = (POOL > 1) ? $clog2(POOL) : 1,
   parameter integer SLOT_BITS = (SLOTS > 1) ? $clog2(SLOTS) : 1
@@ -38,6 +41,8 @@ module rp_ray_exit #(
   input  wire [PLACE_BITS-1:0]      set_place_i,
   input  wire [7:0]                 set_depth_i,
   input  wire                       set_shadow_i,
+  input  wire                       set_returns_i,    // with MISS_RECORDS: no shadow ray, and it returns
+  input  wire                       set_first_i,      // the same, and any hit ends it
   input  wire [95:0]                set_origin_i,
   input  wire [1:0]                 set_main_axis_i,
   input  wire [63:0]                set_shear_i,
@@ -81,7 +86,9 @@ module rp_ray_exit #(
   localparam [2:0] LAST_BEAT = BEATS[2:0] - 3'd1;
 `include "rp_onehot.vh"
 `include "rp_records.vh"
-  localparam integer SET_BITS = PLACE_BITS + 8 + 1 + 96 + 2 + 64 + 9;
+  localparam integer FINISH_BITS = PLACE_BITS + 8 + 96 + 2 + 64 + 9;
+  localparam integer RETURN_BITS = (MISS_RECORDS != 0) ? 2 : 0;
+  localparam integer SET_BITS = RETURN_BITS + 1 + FINISH_BITS;
   genvar g;
 
   // ---- 1: a ray that is done
@@ -113,6 +120,8 @@ module rp_ray_exit #(
 
   // ---- 2: what it becomes, by what is kept in its slot
   wire [LANES*SET_BITS-1:0] sets;
+  wire [FINISH_BITS+2:0] set_words = {set_returns_i, set_first_i, set_shadow_i, set_place_i, set_depth_i, set_origin_i,
+                                      set_main_axis_i, set_shear_i, set_scale_i};
   generate
     for (g = 0; g < LANES; g = g + 1) begin : gen_set
       rp_ram_1r1w #(.WIDTH(SET_BITS), .DEPTH(SLOTS)) set (
@@ -122,24 +131,28 @@ module rp_ray_exit #(
         .read_data_o(sets[g*SET_BITS +: SET_BITS]),
         .write_i(set_valid_i[g]),
         .write_address_i(set_slot_i),
-        .write_data_i({set_shadow_i, set_place_i, set_depth_i, set_origin_i, set_main_axis_i, set_shear_i,
-                       set_scale_i})
+        .write_data_i(set_words[SET_BITS-1:0])
       );
     end
   endgenerate
   `ONEHOT_SELECT(set_among, LANES, SET_BITS)
   wire [SET_BITS-1:0] set_of = set_among(fate_lane_q, sets);
-  wire shadow = set_of[SET_BITS-1];
+  wire returns = MISS_RECORDS != 0 && set_of[SET_BITS-1];
+  wire first = MISS_RECORDS != 0 && set_of[SET_BITS-2];
+  wire shadow = set_of[FINISH_BITS];
   wire [PLACE_BITS-1:0] place = set_of[179 +: PLACE_BITS];
-  wire drops = shadow == fate_hit_q;
-  wire finishes = !shadow && fate_hit_q;
+  wire plain = fate_hit_q ? first : returns;
+  wire drops = shadow == fate_hit_q && !plain;
+  wire finishes = !shadow && fate_hit_q && !plain;
   wire unblocked = fate_q && shadow && !fate_hit_q;
 
   wire entry_valid, drop_freed;
-  // Whether it is a shadow ray is read, and so known last: it chooses between what either would do.
+  wire finished, finished_direct;
+  // What kind of ray it is is read, and so known last: it chooses between what each would do.
   wire shadow_moves = !fate_hit_q || drop_freed, normal_moves = fate_hit_q ? entry_valid : drop_freed;
-  wire fate_moves = shadow ? shadow_moves : normal_moves;
-  assign fate_ready = shadow ? !fate_q || shadow_moves : !fate_q || normal_moves;
+  wire plain_moves = !finished;                  // a finished hit goes first
+  wire fate_moves = plain ? plain_moves : shadow ? shadow_moves : normal_moves;
+  assign fate_ready = plain ? !fate_q || plain_moves : shadow ? !fate_q || shadow_moves : !fate_q || normal_moves;
   assign slot_free_o = fate_lane_q & {LANES{fate_q && fate_moves}};
   assign slot_free_slot_o = fate_slot_q;
 
@@ -167,14 +180,14 @@ module rp_ray_exit #(
   wire [63:0] hit_shear;
   wire [8:0] hit_scale;
   wire [31:0] hit_t;
-  rp_ram_1r1w #(.WIDTH(SET_BITS-1+32), .DEPTH(SLOTS)) hits (
+  rp_ram_1r1w #(.WIDTH(FINISH_BITS+32), .DEPTH(SLOTS)) hits (
     .clk_i(clk_i),
     .read_i(load),
     .read_address_i(load_slot),
     .read_data_o({hit_place, hit_depth, hit_origin, hit_main_axis, hit_shear, hit_scale, hit_t}),
     .write_i(begins),
     .write_address_i(entry),
-    .write_data_i({set_of[SET_BITS-2:0], fate_t_q})
+    .write_data_i({set_of[FINISH_BITS-1:0], fate_t_q})
   );
   rp_leaf_reader #(.SLOTS(SLOTS), .LINE_BITS(26)) reader (
     .clk_i(clk_i),
@@ -208,9 +221,8 @@ module rp_ray_exit #(
   wire [31:0] number = triangle[TRIANGLE_NUMBER +: TRIANGLE_NUMBER_BITS];
   wire [31:0] material = triangle[TRIANGLE_MATERIAL +: TRIANGLE_MATERIAL_BITS];
   wire direct = CULLING != 0 && reflections_i && !(hit_depth < depth_limit_i && material[31]);
-  wire unused = &{1'b0, triangle_last, triangle_place, material[30:27]};
+  wire unused = &{1'b0, triangle_last, triangle_place, material[30:27], set_words};
 
-  wire finished, finished_direct;
   wire [PLACE_BITS-1:0] finished_place;
   wire [31:0] t, u, v;
   wire [95:0] normal;
@@ -233,14 +245,26 @@ module rp_ray_exit #(
     .normal_o(normal)
   );
 
-  // ---- Packages that wait, by kind, and what they are made of, by place
+  // ---- Packages that wait, by kind, and what they are made of, by place. Of a normal one also: it is plain, and of a
+  // ray that returns whether it has met something.
   wire [KINDS-1:0] waits, chosen;
   wire [KINDS*PLACE_BITS-1:0] oldest;
+  wire oldest_plain, oldest_met;
   generate
     for (g = 0; g < KINDS; g = g + 1) begin : gen_kind
       if (g == 1 && SHADING != 0) begin : gen_none
         assign waits[g] = 1'b0;
         assign oldest[g*PLACE_BITS +: PLACE_BITS] = {PLACE_BITS{1'b0}};
+      end else if (g == 0 && MISS_RECORDS != 0) begin : gen_returning
+        rp_ram_queue #(.WIDTH(PLACE_BITS + 2), .DEPTH(POOL)) queue (
+          .clk_i(clk_i),
+          .rst_ni(rst_ni),
+          .push_i(finished || (fate_q && plain)),
+          .data_i(finished ? {2'b01, finished_place} : {1'b1, fate_hit_q, place}),
+          .valid_o(waits[g]),
+          .ready_i(chosen[g]),
+          .data_o({oldest_plain, oldest_met, oldest[g*PLACE_BITS +: PLACE_BITS]})
+        );
       end else begin : gen_queue
         rp_ram_queue #(.WIDTH(PLACE_BITS), .DEPTH(POOL)) queue (
           .clk_i(clk_i),
@@ -253,10 +277,14 @@ module rp_ray_exit #(
         );
       end
     end
+    if (MISS_RECORDS == 0) begin : gen_no_plain
+      assign {oldest_plain, oldest_met} = 2'd0;
+    end
   endgenerate
   reg puts_q;
   reg [2:0] beat_q;
   reg [PLACE_BITS-1:0] put_place_q;
+  reg put_plain_q, put_met_q;
   wire [KINDS-1:0] kind_grant;
   // Only between two packages is it known whether there is room for another.
   rp_round_robin #(.COUNT(KINDS)) kind_turn (
@@ -279,6 +307,8 @@ module rp_ray_exit #(
       beat_q <= 3'd0;
       put_kind_o <= chosen_kind;
       put_place_q <= chosen_place;
+      put_plain_q <= chosen[0] && oldest_plain;
+      put_met_q <= oldest_met;
     end else if (beat_goes) begin
       beat_q <= beat_q + 3'd1;
     end
@@ -315,7 +345,9 @@ module rp_ray_exit #(
   );
   wire [31:0] material_word = material_base_i + {put_triangle[26:0], 5'd0};
   wire [255:0] hit_words = {put_triangle[58:27], material_word, put_hit};
-  wire [1023:0] words = {384'd0, (put_kind_o == 2'd2) ? 256'd0 : hit_words, put_ray};
+  wire put_met = (MISS_RECORDS != 0 && put_ray[RAY_RETURNS] && !put_ray[RAY_SHADOW]) ? put_met_q : put_ray[RAY_MET];
+  wire [1023:0] words = {384'd0, (put_kind_o == 2'd2 || put_plain_q) ? 256'd0 : hit_words, put_ray[383:RAY_FIRST],
+                         put_met, put_ray[RAY_MET-1:0]};
   integer w;
   always @* begin
     put_data_o = 128'd0;

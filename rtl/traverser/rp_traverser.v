@@ -29,6 +29,7 @@ module rp_traverser #(
   parameter integer RECORD_WORDS = 21,           // of a package
   parameter integer SHADING = 0,                 // shadow rays that meet nothing are contributions
   parameter integer CULLING = 0,
+  parameter integer MISS_RECORDS = 0,            // rays return that ask for it; not with CULLING
   parameter integer KINDS = 2 + CULLING,
   parameter integer PLACE_BITS = (POOL > 1) ? $clog2(POOL) : 1
 ) (
@@ -117,7 +118,7 @@ module rp_traverser #(
   wire [SLOT_BITS-1:0] enter_slot = slot_among(enter_grant, slot_of);
 
   // ---- It is set up, for all lanes to see
-  wire set_valid, meets, set_shadow;
+  wire set_valid, meets, set_shadow, set_returns, set_first;
   wire [PLACE_BITS-1:0] set_place;
   wire [7:0] set_depth;
   wire [LANES-1:0] set_lane;
@@ -132,18 +133,28 @@ module rp_traverser #(
   wire [1:0] main_axis;
   wire [63:0] shear;
   wire [104:0] direction;
-  rp_ray_setup #(.BITS(BITS), .TAG_BITS(PLACE_BITS+8+1+LANES+SLOT_BITS)) setup (
+  localparam integer SET_TAG_BITS = ((MISS_RECORDS != 0) ? 2 : 0) + PLACE_BITS + 8 + 1 + LANES + SLOT_BITS;
+  wire ray_returns = ray_words[RAY_RETURNS] && !ray_words[RAY_SHADOW];
+  wire [PLACE_BITS+10+LANES+SLOT_BITS:0] ray_tag = {
+    ray_returns, ray_returns && ray_words[RAY_FIRST],
+    ray_place_i, ray_words[RAY_DEPTH +: RAY_DEPTH_BITS], ray_words[RAY_SHADOW], enter_grant, enter_slot};
+  wire unused_tag = &{1'b0, ray_tag};
+  wire [SET_TAG_BITS-1:0] set_tag;
+  assign {set_place, set_depth, set_shadow, set_lane, set_slot} = set_tag[PLACE_BITS+8+LANES+SLOT_BITS:0];
+  assign set_returns = MISS_RECORDS != 0 && set_tag[SET_TAG_BITS-1];
+  assign set_first = MISS_RECORDS != 0 && set_tag[SET_TAG_BITS-2];
+  rp_ray_setup #(.BITS(BITS), .TAG_BITS(SET_TAG_BITS)) setup (
     .clk_i(clk_i),
     .rst_ni(rst_ni),
     .valid_i(enters),
-    .tag_i({ray_place_i, ray_words[RAY_DEPTH +: RAY_DEPTH_BITS], ray_words[RAY_SHADOW], enter_grant, enter_slot}),
+    .tag_i(ray_tag[SET_TAG_BITS-1:0]),
     .origin_i(ray_words[RAY_ORIGIN +: RAY_ORIGIN_BITS]),
     .direction_i(ray_words[RAY_DIRECTION +: RAY_DIRECTION_BITS]),
     .limit_i(ray_words[RAY_LIMIT +: RAY_LIMIT_BITS]),
     .lower_i(lower_i),
     .upper_i(upper_i),
     .valid_o(set_valid),
-    .tag_o({set_place, set_depth, set_shadow, set_lane, set_slot}),
+    .tag_o(set_tag),
     .hits_o(meets),
     .origin_o(origin),
     .limit_o(limit),
@@ -213,7 +224,7 @@ module rp_traverser #(
         .ray_valid_i(set_valid && set_lane[g]),
         .ray_slot_i(set_slot),
         .ray_meets_i(meets),
-        .ray_shadow_i(set_shadow),
+        .ray_shadow_i(set_shadow || set_first),
         .origin_i(origin),
         .backwards_i(backwards),
         .still_i(still),
@@ -347,7 +358,7 @@ module rp_traverser #(
   // ---- What becomes of rays
   rp_ray_exit #(
     .LANES(LANES), .SLOTS(SLOTS), .POOL(POOL), .RECORD_WORDS(RECORD_WORDS), .SHADING(SHADING), .CULLING(CULLING),
-    .KINDS(KINDS), .PLACE_BITS(PLACE_BITS), .SLOT_BITS(SLOT_BITS)
+    .MISS_RECORDS(MISS_RECORDS), .KINDS(KINDS), .PLACE_BITS(PLACE_BITS), .SLOT_BITS(SLOT_BITS)
   ) exit (
     .clk_i(clk_i),
     .rst_ni(rst_ni),
@@ -363,6 +374,8 @@ module rp_traverser #(
     .set_place_i(set_place),
     .set_depth_i(set_depth),
     .set_shadow_i(set_shadow),
+    .set_returns_i(set_returns),
+    .set_first_i(set_first),
     .set_origin_i(origin),
     .set_main_axis_i(main_axis),
     .set_shear_i(shear),

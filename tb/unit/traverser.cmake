@@ -82,6 +82,7 @@ target_link_libraries(traverser_test PRIVATE raypool_scene)
 set(sizes "LANES;SLOTS;ENTRIES;BITS;TRIANGLE_PIPES;NODE_LINES;NODE_WAYS;NODE_MSHRS;NODE_BANKS;TRIANGLE_LINES;\
 TRIANGLE_WAYS;TRIANGLE_MSHRS;TRIANGLE_BANKS;POOL;RECORD_WORDS;SHADING;CULLING")
 raypool_block_models(traverser_test traverser "${sizes}" 3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1)
+raypool_block_models(traverser_test traverser "${sizes};MISS_RECORDS" 2_3_8_8_1_16_2_4_2_16_2_2_1_24_21_0_0_1)
 raypool_large_bench(traverser 320)
 target_link_libraries(traverser_large_test PRIVATE raypool_scene)
 raypool_block_models(traverser_large_test traverser "${sizes}"

@@ -42,6 +42,7 @@ Traverser::Sizes traverser_sizes(const Configuration& configuration) {
   sizes.record_words = configuration.intersection_words;
   sizes.contributes = chip.shading == Shading::Traverser;
   sizes.culling = chip.culling;
+  sizes.miss_records = chip.miss_records;
   return sizes;
 }
 

@@ -33,6 +33,7 @@ class RayExit {
     uint32_t record_words = kIntersectionWords;
     bool contributes = false;  ///< shadow rays that meet nothing are contributions
     bool culling = false;
+    bool miss_records = false;  ///< rays return that ask for it
   };
   /// What stays for a frame.
   struct Frame {
@@ -45,6 +46,7 @@ class RayExit {
   struct Set {
     uint32_t place = 0, depth = 0;
     bool shadow = false;
+    bool returns = false, first = false;  ///< with miss_records: no shadow ray, and it returns; and any hit ends it
     TriangleRay ray{};
     int scale = 0;
   };
@@ -78,7 +80,7 @@ class RayExit {
         reader_(sizes.slots),
         rays_(sizes.pool),
         finished_(sizes.pool),
-        packages_(kImportKinds, RamQueue<uint32_t>(sizes.pool)),
+        packages_(kImportKinds, RamQueue<Package>(sizes.pool)),
         contributions_(sizes.pool) {}
 
   void set_frame(const Frame& frame) { frame_ = frame; }
@@ -136,9 +138,10 @@ class RayExit {
       reader_.start(cycle_, 0, entries_.number(), fate_->hit.place);
       hits_[entries_.number()] = {set_of(*fate_), fate_->hit.t};
       entries_.take();
-    } else if (moves && !drops()) {
+    } else if (moves && !drops() && !plain()) {
       unblocked = set_of(*fate_);
     }
+    const bool plain_goes = moves && plain();
     move_packages(inputs.put_ready);
     move_contributions(inputs.contribution_ready, contributed_was && !put_free_was);
     finish(reader);
@@ -149,7 +152,8 @@ class RayExit {
     ++cycle_;
 
     if (unblocked && sizes_.contributes) contributions_.push(unblocked->place);
-    if (unblocked && !sizes_.contributes) push_package(ImportKind::Shadow, unblocked->place);
+    if (unblocked && !sizes_.contributes) push_package(ImportKind::Shadow, {unblocked->place});
+    if (plain_goes) push_package(ImportKind::Normal, {set_of(*fate_).place, true, fate_->hit.hit});
     if (moves) fate_.reset();
     if (inputs.done != nullptr) {
       done_turn_.advance(inputs.done->lane);
@@ -170,14 +174,23 @@ class RayExit {
     uint32_t number = 0, material = 0;
   };
 
-  void push_package(ImportKind kind, uint32_t place) {
-    packages_[to_underlying(kind)].push(place);
+  /// One that waits.
+  struct Package {
+    uint32_t place = 0;
+    bool plain = false;  ///< it has no words of a hit, though it is of a normal ray
+    bool met = true;     ///< of a ray that returns: it has met something
+  };
+
+  void push_package(ImportKind kind, const Package& package) {
+    packages_[to_underlying(kind)].push(package);
     waiting_kinds_ |= 1u << to_underlying(kind);
   }
   const Set& set_of(const Done& done) const { return sets_[done.lane * sizes_.slots + done.slot]; }
-  bool drops() const { return set_of(*fate_).shadow == fate_->hit.hit; }
-  bool finishes() const { return !set_of(*fate_).shadow && fate_->hit.hit; }
+  bool plain() const { return fate_->hit.hit ? set_of(*fate_).first : set_of(*fate_).returns; }
+  bool drops() const { return set_of(*fate_).shadow == fate_->hit.hit && !plain(); }
+  bool finishes() const { return !set_of(*fate_).shadow && fate_->hit.hit && !plain(); }
   bool fate_moves() const {
+    if (plain()) return pipe_.result() == nullptr;  // a finished hit goes first
     if (drops()) return !put_free_ && !contributed_;
     return !finishes() || entries_.valid();
   }
@@ -187,7 +200,7 @@ class RayExit {
     if (const RayFinishPipe::Result* const result = pipe_.result()) {
       const auto place = static_cast<uint32_t>(result->tag >> 1);
       finished_[place].finish = result->finish;
-      push_package((result->tag & 1) != 0 ? ImportKind::Direct : ImportKind::Normal, place);
+      push_package((result->tag & 1) != 0 ? ImportKind::Direct : ImportKind::Normal, {place});
     }
     std::optional<LeafReader::Test> test;
     if (pause_ == 0) test = reader_.test();
@@ -216,7 +229,7 @@ class RayExit {
       if ((ready >> to_underlying(put_kind_) & 1) == 0 || ++put_beat_ < beats_) return;
       puts_ = false;
       put_free_ = true;
-      put_free_place_ = put_place_;
+      put_free_place_ = put_package_.place;
       put_free_shadow_ = put_kind_ == ImportKind::Shadow;
       return;
     }
@@ -227,17 +240,18 @@ class RayExit {
     puts_ = true;
     put_beat_ = 0;
     put_kind_ = static_cast<ImportKind>(chosen);
-    put_place_ = packages_[chosen].data();
+    put_package_ = packages_[chosen].data();
     packages_[chosen].pop();
     waiting_kinds_ ^= (packages_[chosen].valid() ? 0u : 1u) << chosen;
     record_ = packed(package(), frame_.layout);
   }
   Intersection package() const {
     Intersection package{};
-    const Ray& ray = rays_[put_place_];
+    const Ray& ray = rays_[put_package_.place];
     std::copy(ray.begin(), ray.end(), package.begin());
-    if (put_kind_ == ImportKind::Shadow) return package;
-    const auto& [finish, number, material] = finished_[put_place_];
+    if (sizes_.miss_records && returns(ray)) set_met(package, put_package_.met);
+    if (put_kind_ == ImportKind::Shadow || put_package_.plain) return package;
+    const auto& [finish, number, material] = finished_[put_package_.place];
     package[word::kDistance] = as_bits(finish.t);
     package[word::kBarycentric] = as_bits(finish.u);
     package[word::kBarycentric + 1] = as_bits(finish.v);
@@ -274,14 +288,15 @@ class RayExit {
   uint32_t pause_ = 0;  // cycles until the next one may be finished
   RayFinishPipe pipe_;
 
-  std::vector<Ray> rays_;                     // [place]
-  std::vector<Finished> finished_;            // [place]
-  std::vector<RamQueue<uint32_t>> packages_;  // [kind] places
-  uint32_t waiting_kinds_ = 0;                // of packages
+  std::vector<Ray> rays_;                    // [place]
+  std::vector<Finished> finished_;           // [place]
+  std::vector<RamQueue<Package>> packages_;  // [kind]
+  uint32_t waiting_kinds_ = 0;               // of packages
   RoundRobin kind_turn_;
   bool puts_ = false;
   ImportKind put_kind_ = ImportKind::None;
-  uint32_t put_beat_ = 0, put_place_ = 0;
+  uint32_t put_beat_ = 0;
+  Package put_package_;
   Intersection record_{};
   bool put_free_ = false, put_free_shadow_ = false;  // a package has left in the cycle before
   uint32_t put_free_place_ = 0;

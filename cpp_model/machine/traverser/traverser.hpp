@@ -49,7 +49,7 @@ class Traverser {
     TreeBanks::Sizes nodes, leaves;  ///< of the caches; their lanes are not looked at
     uint32_t pool = 512;             ///< places of the ray pool
     uint32_t record_words = kIntersectionWords;
-    bool contributes = false, culling = false;
+    bool contributes = false, culling = false, miss_records = false;
   };
   struct Inputs {
     bool ray_valid = false, ray_last = false;
@@ -83,7 +83,8 @@ class Traverser {
         nodes_(of(sizes.nodes, sizes.lanes)),
         leaves_(of(sizes.leaves, sizes.lanes + 1)),
         port_(sizes.nodes.mshrs + sizes.leaves.mshrs + sizes.lanes, slot_bits(sizes.slots)),
-        exit_({sizes.lanes, sizes.slots, sizes.pool, sizes.record_words, sizes.contributes, sizes.culling}) {
+        exit_({sizes.lanes, sizes.slots, sizes.pool, sizes.record_words, sizes.contributes, sizes.culling,
+               sizes.miss_records}) {
     for (uint32_t lane = 0; lane < sizes.lanes; ++lane) {
       lanes_.push_back(std::make_unique<TraverserLane>(
           TraverserLane::Sizes{sizes.slots, sizes.stack_entries, sizes.box_bits}, &with_, lane));
@@ -237,7 +238,7 @@ class Traverser {
   /// A ray that is set up.
   struct Coming {
     uint32_t place = 0, depth = 0;
-    bool shadow = false;
+    bool shadow = false, returns = false, first = false;
     RayExit::Slot slot{0, 0};
   };
 
@@ -411,8 +412,8 @@ class Traverser {
       coming_.pop_front();
       const RaySetup& setup = result->setup;
       entered_ = {coming.slot.slot,
-                  {setup.valid, coming.shadow, setup.box, setup.triangle, {setup.limit, setup.scale}}};
-      set_ = {coming.place, coming.depth, coming.shadow, setup.triangle, setup.scale};
+                  {setup.valid, coming.shadow || coming.first, setup.box, setup.triangle, {setup.limit, setup.scale}}};
+      set_ = {coming.place, coming.depth, coming.shadow, coming.returns, coming.first, setup.triangle, setup.scale};
       exit_inputs_.set = &set_;
       exit_inputs_.set_slot = coming.slot;
     }
@@ -434,7 +435,9 @@ class Traverser {
     work_.most_rays = std::max(work_.most_rays, ++in_flight_);
     coming_.push_back({inputs.ray_place,
                        ray_[word::kFlags] & kDepthMask,
-                       (ray_[word::kFlags] & kShadowFlag) != 0,
+                       is_shadow(ray_),
+                       sizes_.miss_records && returns(ray_),
+                       sizes_.miss_records && returns_first(ray_),
                        {lane, lanes_[lane]->slot()}});
     RayWords words;
     for (int axis = 0; axis < 3; ++axis) {

@@ -36,6 +36,7 @@ struct TraverserSeen {
   std::array<uint64_t, 7> faults{};  ///< [code]
   uint64_t spoilt = 0;               ///< blocks of stacks
   uint64_t exchanged = 0;            ///< rays that left when another one with the same package seemed to have
+  std::array<uint64_t, 2> plain{};   ///< [met something] packages of rays that return, without a hit
 };
 
 /// A cache's sizes.
@@ -46,7 +47,8 @@ struct Cache {
 
 /// Unit: the traverser with these parameters.
 template <typename Unit, uint32_t lanes, uint32_t slots, uint32_t entries, uint32_t bits, uint32_t pipes,
-          typename Nodes, typename Leaves, uint32_t pool, uint32_t words, bool shading, bool culling>
+          typename Nodes, typename Leaves, uint32_t pool, uint32_t words, bool shading, bool culling,
+          bool miss_records = false>
 struct TraverserParameters {
   using Verilated = Unit;
   static constexpr uint32_t kPool = pool, kWords = words, kBits = bits;
@@ -63,6 +65,7 @@ struct TraverserParameters {
     sizes.record_words = words;
     sizes.contributes = shading;
     sizes.culling = culling;
+    sizes.miss_records = miss_records;
     return sizes;
   }
 };
@@ -339,8 +342,14 @@ class TraverserBench {
 
   // ---- What becomes of rays, if that is known
   bool knows() const { return stack_memory_ == StackMemory::Keeps; }
-  bool is_shadow(const Asked& asked) const { return (asked.ray[word::kFlags] & kShadowFlag) != 0; }
-  bool drops(const Asked& asked) const { return is_shadow(asked) == asked.walk.hit.hit; }
+  bool is_shadow(const Asked& asked) const { return raypool::is_shadow(asked.ray); }
+  bool returns(const Asked& asked) const { return P::sizes().miss_records && raypool::returns(asked.ray); }
+  bool drops(const Asked& asked) const { return !returns(asked) && is_shadow(asked) == asked.walk.hit.hit; }
+  /// Its package has the words of a hit.
+  bool shows_hit(const Asked& asked) const {
+    if (!asked.walk.hit.hit || is_shadow(asked)) return false;
+    return !returns(asked) || !returns_first(asked.ray);
+  }
   bool contributes(const Asked& asked) const { return P::sizes().contributes && is_shadow(asked) && !drops(asked); }
   bool needs_room(const Asked& asked) const { return !drops(asked) && !contributes(asked); }
   /// Of the ray in this place that is what it must be, and has not left.
@@ -387,6 +396,7 @@ class TraverserBench {
       if (!needs_room(asked) || kind_of(asked) != kind_out_) continue;
       if (record_ != packed(package_of(asked), frame_.layout)) continue;
       left_[place] = true;
+      if (returns(asked) && !shows_hit(asked)) ++seen.plain[asked.walk.hit.hit ? 1 : 0];
       ++(kind_out_ == ImportKind::Shadow ? seen.shadow : kind_out_ == ImportKind::Direct ? seen.direct : seen.normal);
       return;
     }
@@ -398,13 +408,15 @@ class TraverserBench {
   }
   ImportKind kind_of(const Asked& asked) const {
     if (is_shadow(asked)) return ImportKind::Shadow;
+    if (!shows_hit(asked)) return ImportKind::Normal;
     const bool reflects = (asked.ray[word::kFlags] & kDepthMask) < frame_.depth && material_of(asked) >> 31 != 0;
     return P::sizes().culling && frame_.reflections && !reflects ? ImportKind::Direct : ImportKind::Normal;
   }
   Intersection package_of(const Asked& asked) const {
     Intersection package{};
     std::copy(asked.ray.begin(), asked.ray.end(), package.begin());
-    if (is_shadow(asked)) return package;
+    if (returns(asked)) set_met(package, asked.walk.hit.hit);
+    if (!shows_hit(asked)) return package;
     const LaneHits::Hit& hit = asked.walk.hit;
     const RayFinish finish(asked.set_up, tree_->triangle(hit.place), hit.t, asked.scale);
     package[word::kDistance] = as_bits(finish.t);

@@ -42,7 +42,8 @@ std::vector<typename TraverserBench<P>::Asked> asked_of(const TreeCase& what) {
   const NarrowFloat narrow(TriangleGroup::kBits);
   std::vector<typename TraverserBench<P>::Asked> asked;
   for (const Ray& ray : what.rays) {
-    const LaneRay lane = lane_ray(query_of(ray), what.tree.bounds, P::kBits, (ray[word::kFlags] & kShadowFlag) != 0);
+    const bool any = is_shadow(ray) || (P::sizes().miss_records && returns_first(ray));
+    const LaneRay lane = lane_ray(query_of(ray), what.tree.bounds, P::kBits, any);
     asked.push_back({ray, Walk(what.tree, lane, narrow, P::sizes().stack_entries), lane.limit.scale, lane.triangle});
   }
   return asked;
