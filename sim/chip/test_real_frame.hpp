@@ -1,5 +1,5 @@
-// For tests: the Cornell box, or another scene, drawn with the real kernels, on a device that the test chooses, with
-// the static traverser unless a test changes that.
+// For tests: the Cornell box, or another scene, drawn with the real kernels or others, on a device that the test
+// chooses, with the static traverser unless a test changes that.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "chip/board.hpp"
+#include "kernel/ray_program.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
 #include "scene/scene.hpp"
@@ -19,7 +20,7 @@ struct RealFrame {
   const Scene scene;
   const Program& program;
   MemoryImage image = build_memory(program, scene);
-  const Tracer tracer{scene, image.material_base};
+  const Tracer tracer{scene, image.material_base, configuration.chip};
   SceneTracer scene_tracer{tracer};
   FrameBuffer frame;
   FrameBufferSink sink{frame};
@@ -27,12 +28,15 @@ struct RealFrame {
 
   RealFrame(uint32_t warps, uint32_t lanes, uint32_t width, uint32_t height, uint32_t depth,
             Scene drawn = make_cornell(), bool culling = false, uint32_t intersection_words = kIntersectionWords)
-      : configuration(machine(warps, lanes, intersection_words, culling)),
-        scene(std::move(drawn)),
-        program(ray_kernel_program(KernelTarget(configuration))),
-        frame(width, height) {
+      : RealFrame(machine(warps, lanes, intersection_words, culling), width, height, depth, std::move(drawn)) {}
+  RealFrame(const Configuration& on, uint32_t width, uint32_t height, uint32_t depth, Scene drawn)
+      : RealFrame(on, built_in_ray_program(KernelTarget(on)), width, height, depth, std::move(drawn)) {}
+  /// `kernels` must outlive it.
+  RealFrame(const Configuration& on, const RayProgram& kernels, uint32_t width, uint32_t height, uint32_t depth,
+            Scene drawn)
+      : configuration(on), scene(std::move(drawn)), program(kernels.program), frame(width, height) {
     options.configuration = configuration;
-    options.layout = ray_record_layout(configuration);
+    options.layout = record_layout(kernels, configuration);
     options.memory = &image.memory;
     options.program_length = size32(program.code);
     for (size_t i = 0; i < kRayKernels; ++i) options.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));

@@ -389,6 +389,15 @@ std::vector<Machine> covering_machines(int most_threads, size_t most_pairings) {
 
 std::vector<Machine> covering_chips() { return chips_of(chip_factors(), TraverserName::Static, "chip"); }
 
-std::vector<Machine> covering_inside() { return chips_of(inside_factors(), TraverserName::Hardware, "inside"); }
+std::vector<Machine> covering_inside() {
+  std::vector<Machine> machines = chips_of(inside_factors(), TraverserName::Hardware, "inside");
+  // No factor, as no machine has them with culling: rays return in every other one without.
+  bool returned = false;
+  for (Machine& machine : machines) {
+    ChipConfiguration& chip = machine.configuration.chip;
+    if (!chip.culling) chip.miss_records = returned = !returned;
+  }
+  return machines;
+}
 
 }  // namespace raypool

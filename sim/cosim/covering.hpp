@@ -51,7 +51,7 @@ Covered count_covered(const std::vector<Factor>& factors, const std::vector<Mach
 std::vector<Machine> covering_machines(int most_threads, size_t most_pairings = ~size_t{0});
 /// Every pair of values of two chip_factors() that a machine of kSmallThreads can have is in one of them.
 std::vector<Machine> covering_chips();
-/// The same of inside_factors().
+/// The same of inside_factors(); of those without culling every other one has miss_records.
 std::vector<Machine> covering_inside();
 
 }  // namespace raypool

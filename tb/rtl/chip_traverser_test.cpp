@@ -127,7 +127,7 @@ TEST_P(ChipTraverser, DrawsTheSameInSystemCWithDramOfBanks) {
   EXPECT_GT(tree.row_hits, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest_inside, full_inside),
+INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest_inside, full_inside, returning_inside),
                          [](const auto& machine) { return machine.param().configuration.name; });
 
 /// Malformed trees, and the faults that come of them.

@@ -409,7 +409,7 @@ void print_sets() {
                kSmallThreads, what, covered.values, covered.all_values, covered.pairs, covered.all_pairs);
   };
   print(covering_chips(), chip_factors(), "");
-  print(covering_inside(), inside_factors(), " with the traverser inside, and three more");
+  print(covering_inside(), inside_factors(), " with the traverser inside, and four more");
 }
 
 /// Of all machines that have drawn.

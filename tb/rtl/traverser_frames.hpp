@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chip/board.hpp"
+#include "chip/test_returning_kernels.hpp"
 #include "chip/tree_image.hpp"
 #include "random.hpp"
 #include "rtl/chip_frames.hpp"
@@ -97,9 +98,18 @@ inline Machine crowded_inside() {
   return machine;
 }
 
+/// Rays return, some of which wait while others are finished.
+inline Machine returning_inside() {
+  Machine machine = crowded_inside();
+  machine.configuration.name = "chip_traverser_1w2c_returning";
+  machine.configuration.chip.culling = false;
+  machine.configuration.chip.miss_records = true;
+  return machine;
+}
+
 /// The machines of `make chip-frames` that have it inside: these, and every pair of values of what such a chip has.
 inline std::vector<Machine> inside_machines() {
-  std::vector<Machine> machines = {smallest_inside(), full_inside(), crowded_inside()};
+  std::vector<Machine> machines = {smallest_inside(), full_inside(), crowded_inside(), returning_inside()};
   for (Machine& machine : covering_inside()) machines.push_back(std::move(machine));
   return machines;
 }
@@ -158,6 +168,12 @@ inline void make_dull(Scene& scene, uint32_t seed) {
     if (random() % 2 == 0) material = size32(scene.materials) - 1;
 }
 
+/// Those that its machines draw with.
+inline const RayProgram& kernels_for(const Configuration& configuration) {
+  const KernelTarget target(configuration);
+  return configuration.chip.miss_records ? returning_kernels(target) : built_in_ray_program(target);
+}
+
 /// A picture of a scene, and what it takes to draw it on a chip.
 class Drawing {
  public:
@@ -168,7 +184,8 @@ class Drawing {
           uint32_t strange = 0)
       : configuration_(machine.configuration),
         scene_(std::move(scene)),
-        program_(ray_kernel_program(KernelTarget(configuration_))),
+        kernels_(kernels_for(configuration_)),
+        program_(kernels_.program),
         image_(build_memory(program_, scene_)),
         tracer_(scene_, image_.material_base, configuration_.chip),
         frame_(static_cast<int>(picture.width), static_cast<int>(picture.height)),
@@ -176,7 +193,7 @@ class Drawing {
         tree_(make_tree_image(scene_, tree_of(tracer_.traversal().bvh(), tree), configuration_.chip,
                               image_.material_base)) {
     options_.configuration = configuration_;
-    options_.layout = ray_record_layout(configuration_);
+    options_.layout = record_layout(kernels_, configuration_);
     options_.memory = &image_.memory;
     options_.tree = &tree_;
     options_.program_length = size32(program_.code);
@@ -229,6 +246,7 @@ class Drawing {
     native.depth = static_cast<int>(options_.depth);
     native.reflections = options_.reflections;
     native.culling = configuration_.chip.culling;
+    native.kernel = kernels_.native;
     NativeStatistics statistics;
     EXPECT_TRUE(frame_ == render_native(scene_, image_, tracer_, native, &statistics));
     for (const auto kind : {&RayCounts::eye, &RayCounts::reflection, &RayCounts::shadow}) {
@@ -300,6 +318,7 @@ class Drawing {
 
   const Configuration configuration_;
   const Scene scene_;
+  const RayProgram& kernels_;
   const Program& program_;
   MemoryImage image_;
   const Tracer tracer_;
