@@ -5,8 +5,8 @@
 // finished: its triangle is read through the triangle cache and rp_ray_finish.v computes what the package carries. With
 // MISS_RECORDS a ray that returns leaves a package in every case, a plain one without a hit if it has met nothing or
 // any hit would do. What a ray came with, and its hit, lie by its place in the ray pool until the package leaves; so
-// its slot in the lane is free at once, and rays that wait for room in the intersection pool hold up no others, but
-// plain packages wait while a hit has been finished. Promises: each ray that is done
+// its slot in the lane is free at once, and rays that wait for room in the intersection pool hold up no others. A plain
+// package waits in a cycle in which a hit has been finished. Promises: each ray that is done
 // frees its place once, when what it has become has left; packages of a kind leave in the order in which they were
 // finished; a kind is begun only when there is room for it; no output depends on an input of the same cycle but
 // done_ready_o and slot_free_*, which depend on done_valid_i alone. Must be given: a ray's words and its set-up before
@@ -346,7 +346,8 @@ module rp_ray_exit #(
   wire [31:0] material_word = material_base_i + {put_triangle[26:0], 5'd0};
   wire [255:0] hit_words = {put_triangle[58:27], material_word, put_hit};
   wire put_met = (MISS_RECORDS != 0 && put_ray[RAY_RETURNS] && !put_ray[RAY_SHADOW]) ? put_met_q : put_ray[RAY_MET];
-  wire [1023:0] words = {384'd0, (put_kind_o == 2'd2 || put_plain_q) ? 256'd0 : hit_words, put_ray[383:RAY_FIRST],
+  wire put_plain = MISS_RECORDS != 0 && put_plain_q;
+  wire [1023:0] words = {384'd0, (put_kind_o == 2'd2 || put_plain) ? 256'd0 : hit_words, put_ray[383:RAY_FIRST],
                          put_met, put_ray[RAY_MET-1:0]};
   integer w;
   always @* begin
