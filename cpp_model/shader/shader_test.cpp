@@ -19,8 +19,8 @@
 #include "random.hpp"
 #include "shader/glsl.hpp"
 #include "shader/lowering.hpp"
-#include "shader/random_shaders.hpp"
 #include "shader/shader_set.hpp"
+#include "shader/test_random_shaders.hpp"
 #include "shader/test_spirv.hpp"
 
 namespace raypool::shader {
