@@ -64,6 +64,7 @@ Effects effects(const Op& op) {
   }
   // Predicates are written in all lanes, registers in the masked ones.
   result.partial = result.register_defined != kNothing && !op.fresh && !op.guard.all();
+  result.operands = registers;
   if (result.partial) use_register(result.register_defined);
   return result;
 }

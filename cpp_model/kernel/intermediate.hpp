@@ -97,7 +97,9 @@ struct Function {
 
 /// What an op reads and writes. Predicate p0 is left out.
 struct Effects {
+  /// First `operands` numbers that are read as such, then those of which a partial write leaves lanes as they are.
   std::array<int, 3 * kElements + 1> register_uses;
+  size_t operands = 0;
   int predicate_uses[4] = {kNothing, kNothing, kNothing, kNothing};
   int register_defined = kNothing;
   int registers_defined = 0;  ///< how many from it on

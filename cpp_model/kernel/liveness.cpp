@@ -49,11 +49,12 @@ Liveness find_liveness(const Function& function, bool through_reloads) {
       const Effects effect = skipped ? Effects() : effects(function.ops[i]);
       NumberSet registers_before = registers;
       NumberSet predicates_before = predicates;
-      for (int e = 0; e < effect.registers_defined; ++e) registers_before.erase(effect.register_defined + e);
+      // A partial write neither ends the old value nor needs it: what reads it behind the write needs it before too. So
+      // what a loop only writes is needed nowhere.
+      for (int e = 0; e < (effect.partial ? 0 : effect.registers_defined); ++e)
+        registers_before.erase(effect.register_defined + e);
       if (effect.predicate_defined != kNothing) predicates_before.erase(effect.predicate_defined);
-      for (const int used : effect.register_uses) {
-        if (used != kNothing) registers_before.insert(used);
-      }
+      for (size_t n = 0; n < effect.operands; ++n) registers_before.insert(effect.register_uses[n]);
       for (const int used : effect.predicate_uses) {
         if (used != kNothing) predicates_before.insert(used);
       }

@@ -83,8 +83,8 @@ class Spiller {
       return std::find(std::begin(effect.predicate_uses), std::end(effect.predicate_uses), number) !=
              std::end(effect.predicate_uses);
     }
-    const auto count = std::count(effect.register_uses.begin(), effect.register_uses.end(), number);
-    return count > (effect.partial && effect.register_defined == number ? 1 : 0);
+    const auto end = effect.register_uses.begin() + static_cast<std::ptrdiff_t>(effect.operands);
+    return std::find(effect.register_uses.begin(), end, number) != end;
   }
   bool begins(size_t op, int number) const { return defined(op) == number && function_.ops[op].spill != Spill::Reload; }
 

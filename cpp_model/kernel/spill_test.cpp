@@ -9,6 +9,7 @@
 #include "bits.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/kernel.hpp"
+#include "kernel/liveness.hpp"
 #include "kernel/needed_places.hpp"
 #include "kernel/ray_kernels.hpp"
 #include "kernel/test_interpreter.hpp"
@@ -208,6 +209,55 @@ TEST(Spill, PartialWritesInLoopsKeepTheLanesThatHaveLeft) {
   for (const int values : {20, 40, 100})
     for (const bool reuses_values : {false, true})
       check([&](auto& k) { loops(k, values); }, Room::WordsAndMemory, reuses_values);
+}
+
+/// Loops that write values which nothing reads.
+template <typename K>
+void idle_loops(K& k, int count) {
+  using KInt = typename K::Int;
+  k.ray_in();
+  Ints<K> idle = many_values(k, 12), values = many_values(k, count);
+  KInt left = (k.thread() & 3) + 1;
+  k.while_([&] { return left > 0; },
+           [&] {
+             for (size_t i = 0; i < values.size(); i += 3) values[i] += values[(i + 7) % values.size()] + left;
+             KInt inner = left & 1;
+             k.while_([&] { return inner < 3; },
+                      [&] {
+                        for (size_t i = 0; i < idle.size(); ++i) idle[i] = values[i] + inner;
+                        values[3] = values[3] * 5 + inner;
+                        inner += 1;
+                      });
+             left -= 1;
+           });
+  export_all(k, values);
+}
+
+TEST(Spill, WhatLoopsOnlyWriteTakesNoSlotOfOthers) {
+  for (const int values : {40, 60, 100})
+    for (const bool reuses_values : {false, true})
+      check([&](auto& k) { idle_loops(k, values); }, Room::WordsAndMemory, reuses_values);
+}
+
+TEST(Spill, NothingIsNeededOfWhatALoopOnlyWrites) {
+  int idle = kNothing;
+  Function function = record_kernel("k", [&](RecordedKernel& k) {
+    RecordedKernel::Int left = k.thread() & 3, written = left;
+    idle = written.number();
+    k.while_([&] { return left > 0; },
+             [&] {
+               written = left * 3;
+               left -= 1;
+             });
+  });
+  const auto writes = [&] {
+    return std::count_if(function.ops.begin(), function.ops.end(),
+                         [&](const Op& op) { return effects(op).register_defined == idle; });
+  };
+  EXPECT_EQ(writes(), 2);
+  for (const NumberSet& needed : find_liveness(function).registers_after) EXPECT_FALSE(needed.has(idle));
+  remove_dead(function);
+  EXPECT_EQ(writes(), 0);
 }
 
 TEST(Spill, WhatALoopUsesStaysInRegisters) {

@@ -1,6 +1,4 @@
 // Random shader sets are GLSL, the same for a seed, and have what they are made to test.
-#include "shader/random_shaders.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <set>
 
 #include "bits.hpp"
+#include "shader/test_random_shaders.hpp"
 
 namespace raypool::shader {
 namespace {

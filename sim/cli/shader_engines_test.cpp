@@ -18,7 +18,7 @@
 #include "cli/commands.hpp"
 #include "config/data_folder.hpp"
 #include "isa/input_error.hpp"
-#include "shader/random_shaders.hpp"
+#include "shader/test_random_shaders.hpp"
 
 namespace raypool {
 namespace {

@@ -1,4 +1,4 @@
-#include "shader/random_shaders.hpp"
+#include "shader/test_random_shaders.hpp"
 
 #include <fmt/format.h>
 
