@@ -81,8 +81,6 @@ ifneq (,$(findstring $(space),$(BUILD)))
   $(error BUILD=$(BUILD) contains a space, which Verilator's makefiles cannot handle: choose another folder)
 endif
 RAYPOOL := $(BUILD)/raypool
-# One at a time in a folder: a second make waits here.
-LOCKED := flock $(BUILD)/.lock
 # Benches with runs of hours, which are worth an optimised build.
 OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/benches ON \
   -DRAYPOOL_BENCHES_OPTIMISED=ON
@@ -335,7 +333,7 @@ configured-%:
 	@mkdir -p $(BUILD) 2> /dev/null && [ -w $(BUILD) ] || \
 	  { echo 'make: the build folder "$(BUILD)" cannot be written: choose another one with BUILD=/path/elsewhere' >&2; \
 	    exit 1; }
-	@$(LOCKED) scripts/configure.sh $(BUILD) $*
+	@scripts/configure.sh $(BUILD) $*
 
 program: configured-OFF
 	$(call built,raypool,raypool; the first time this takes about three minutes)
