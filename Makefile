@@ -272,9 +272,10 @@ synth-module: setup-synth ## area and slack of one module for each of PARAMETERS
 growth: setup-sim setup-synth program ## area against warps, lanes, ALUs; what each feature costs
 	@$(SYNTH) growth $(call options,PLAN OUT) $(ARGS)
 
-test: setup-sim setup-test setup-synth configured-ON ## what guards a change
-	@scripts/build.sh $(BUILD)
-	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE '^long-'
+#: variable of make test:  ONLY=NAME: a test or test program that docs/develop/where.md names, or report_*
+test: setup-sim setup-test setup-synth configured-ON ## what guards a change; ONLY=NAME: one test of it
+	@$(if $(ONLY),scripts/one_test.py $(BUILD) "$$ONLY",scripts/build.sh $(BUILD); \
+	  ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE '^long-')
 
 #: variable of make test-long:  SHARE=1..10: only this tenth of the tests
 test-long: setup-sim setup-test setup-synth setup-lint configured-ON ## the other tests; SHARE=1..10: a tenth
