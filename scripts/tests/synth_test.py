@@ -417,8 +417,10 @@ class Whole(SmallBlocks):
             (["fit", run], "not what raypool fit --json writes"),
             (["fit", "/no/such.json"], "not what raypool fit --json writes"),
             (["module", "teapot"], "teapot: no such module in rtl/"),
+            (["module", "rp_box_pip"], "box_pip: no such module in rtl/: did you mean box_pipe?"),
+            (["module", ""], "name a module of rtl/: MODULE="),
             (["module", "free_list", "SIZE"], "written BITS=8 or A=1,B=2"),
-            (["module", "free_list", "SPOUT=1"], "free_list has no parameter SPOUT"),
+            (["module", "rp_free_list", "SPOUT=1"], "free_list has no parameter SPOUT"),
         ):
             code, text = self.command(*arguments)
             self.assertEqual(code, 1, text)
