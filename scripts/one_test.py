@@ -28,9 +28,13 @@ def program(test):
     return os.path.basename(test["command"][0]) if "command" in test else test["name"].removesuffix(NOT_BUILT)
 
 
+def said(test, name):
+    """The list that a test's property is; empty without it."""
+    return next((kept["value"] for kept in test["properties"] if kept["name"] == name), [])
+
+
 def is_long(test):
-    labels = [word for kept in test["properties"] if kept["name"] == "LABELS" for word in kept["value"]]
-    return any(label.startswith("long-") for label in labels)
+    return any(label.startswith("long-") for label in said(test, "LABELS"))
 
 
 def is_case(test):
@@ -50,6 +54,29 @@ def chosen(listed, name):
     ]
 
 
+def with_fixtures(listed, numbers):
+    """The tests of these numbers, and those that ctest runs before them."""
+    found, waiting = [], [listed[number - 1] for number in numbers]
+    while waiting:
+        test = waiting.pop()
+        found.append(test)
+        asked = set(said(test, "FIXTURES_REQUIRED"))
+        waiting += [t for t in listed if asked & set(said(t, "FIXTURES_SETUP")) and t not in found + waiting]
+    return found
+
+
+def targets(build, run):
+    """What is built for these tests: the programs that their commands name, and the one that scripts expect; nothing,
+    which is all, where one looks into the whole folder or at what benches are made of.
+    """
+    build = os.path.abspath(build)
+    words = {word.split("=")[-1] for test in run for word in test.get("command", [])}
+    inside = {os.path.relpath(word, build) for word in words if word == build or word.startswith(build + os.sep)}
+    if any(place == "." or place.startswith("tb" + os.sep) for place in inside):
+        return []
+    return sorted({"raypool", *(place for place in inside if place.startswith("raypool"))})
+
+
 def programs(listed):
     return {program(test) for test in listed if is_case(test) or test["name"].endswith(NOT_BUILT)}
 
@@ -66,10 +93,15 @@ def refused(listed, name):
 def main(build, name):
     listed = tests(build)
     if name in programs(listed):
-        subprocess.run([BUILD_SCRIPT, build, name], check=True)
-        listed = tests(build)
-    elif chosen(listed, name) or name[:1].isupper():
-        subprocess.run([BUILD_SCRIPT, build], check=True)
+        wanted = [name]
+    elif chosen(listed, name):
+        wanted = targets(build, with_fixtures(listed, chosen(listed, name)))
+    else:
+        # Of a suite nothing is known before its program is there.
+        wanted = [] if name[:1].isupper() else None
+    if wanted is not None:
+        subprocess.run([BUILD_SCRIPT, build, *wanted], check=True)
+        # Programs that are there now have other tests, and so all have other numbers.
         listed = tests(build)
     numbers = chosen(listed, name)
     if not numbers:

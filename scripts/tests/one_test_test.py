@@ -23,6 +23,11 @@ add_test(Sums.Large "/bin/false" "--gtest_filter=Sums.Large")
 set_tests_properties(Sums.Large PROPERTIES LABELS "long-2")
 add_test(page_a "/bin/echo")
 add_test(page_b "/bin/false")
+add_test(page_c "/bin/echo" "@/raypool_faults" "@/out")
+set_tests_properties(page_c PROPERTIES FIXTURES_REQUIRED unit)
+add_test(page_d "/bin/echo" "@")
+add_test(unit "/bin/echo" "PROGRAM=@/raypool-tables")
+set_tests_properties(unit PROPERTIES FIXTURES_SETUP unit)
 add_test(proof_queue "/bin/echo")
 add_test(pool_test_NOT_BUILT pool_test_NOT_BUILT)
 """
@@ -33,14 +38,14 @@ class Chosen(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.build = folder.name
-        pathlib.Path(self.build, "CTestTestfile.cmake").write_text(TESTS)
+        pathlib.Path(self.build, "CTestTestfile.cmake").write_text(TESTS.replace("@", self.build))
         log = pathlib.Path(self.build, "built")
         script = pathlib.Path(self.build, "build.sh")
-        script.write_text(f'#!/bin/sh\necho "all$2" >> {log}\n')
+        script.write_text(f'#!/bin/sh\nshift\necho "$@." >> {log}\n')
         script.chmod(0o755)
         self.addCleanup(setattr, one_test, "BUILD_SCRIPT", one_test.BUILD_SCRIPT)
         one_test.BUILD_SCRIPT = script
-        self.built = lambda: log.read_text().split() if log.exists() else []
+        self.built = lambda: log.read_text().splitlines() if log.exists() else []
 
     def names(self, name):
         listed = one_test.tests(self.build)
@@ -52,7 +57,7 @@ class Chosen(unittest.TestCase):
 
     def test_a_name_is_a_test_a_suite_a_pattern_or_a_proof(self):
         self.assertEqual(self.names("page_a"), ["page_a"])
-        self.assertEqual(self.names("page_*"), ["page_a", "page_b"])
+        self.assertEqual(self.names("page_*"), ["page_a", "page_b", "page_c", "page_d"])
         self.assertEqual(self.names("Sums"), ["Sums.Add", "Sums.Large"])
         self.assertEqual(self.names("queue"), ["proof_queue"])
         self.assertEqual(self.names("page"), [])
@@ -61,13 +66,13 @@ class Chosen(unittest.TestCase):
         for name, passes in (("page_a", True), ("page_b", False), ("true", True)):
             self.assertEqual(one_test.main(self.build, name) == 0, passes, name)
 
-    def test_a_program_is_built_alone(self):
-        one_test.main(self.build, "true")
-        one_test.main(self.build, "page_a")
-        self.assertEqual(self.built(), ["alltrue", "all"])
+    def test_only_what_runs_is_built(self):
+        for name in ("true", "page_a", "page_c", "page_d"):
+            one_test.main(self.build, name)
+        self.assertEqual(self.built(), ["true.", "raypool.", "raypool raypool-tables raypool_faults.", "."])
 
     def test_a_name_of_nothing_is_refused_and_nothing_is_built_for_it(self):
-        for name, near in (("pool_tset", "pool_test"), ("page_c", "page_"), ("nothing", "")):
+        for name, near in (("pool_tset", "pool_test"), ("page_f", "page_"), ("nothing", "")):
             said = io.StringIO()
             with contextlib.redirect_stderr(said):
                 self.assertEqual(one_test.main(self.build, name), 1)
