@@ -79,12 +79,15 @@ if [ -n "$config" ] && [ ! -f "$config" ]; then
   if [[ $config == */* || $config == *.json ]]; then
     [ -e "$config" ] ||
       refuse "CONFIG=$config: there is no such file$(near "$config" "$(dirname "$config")"/*.json "${known[@]}")"
-  elif [[ ! $config =~ ^([A-Za-z][A-Za-z0-9]*_)?[0-9]{1,4}w[0-9]{1,4}c$ ]]; then
+  else
     names=("${known[@]##*/}")
     names=("${names[@]%.json}")
-    [[ " ${names[*]} " == *" $config "* ]] ||
-      refuse "CONFIG=$config: no configuration of this name$(near "$config" "${names[@]}") (give one of configs/," \
-        "NwMc for N warps of M lanes, best_NwMc, or the path of a JSON file)"
+    size='[0-9]{1,4}w[0-9]{1,4}c'
+    [[ " ${names[*]} " == *" $config "* || $config =~ ^$size$ ]] ||
+      { [[ $config =~ ^([A-Za-z][A-Za-z0-9]*)_$size$ ]] && [[ " ${names[*]} " == *" ${BASH_REMATCH[1]} "* ]]; } ||
+      refuse "CONFIG=$config: no configuration of this name$(near "$config" "${names[@]}" "best_${config#*_}" \
+        configs/cosim/*.json) (give one of configs/, NwMc for N warps of M lanes, best_NwMc, or the path of a JSON" \
+        "file)"
   fi
 fi
 

@@ -190,7 +190,9 @@ class Frames(unittest.TestCase):
             ("THREADS", "0", "from 1 to 256"), ("DETAIL", "fine", "a number"), ("FOV", "wide", "a number"),
             ("EYE", "1,2", "three numbers"), ("UP", "0,1,z", "three numbers"),
             ("VIEW", "configs/views/confrence.json", "did you mean configs/views/conference.json?"),
-            ("CONFIG", "8w8d", "did you mean 8w8c?"), ("CONFIG", "configs/8w8.json", "mean configs/8w8c.json?"),
+            ("CONFIG", "8w8d", "did you mean 8w8c?"),
+            ("CONFIG", "configs/8w8.json", "mean configs/8w8c.json?"), ("CONFIG", "bset_8w8c", "mean best_8w8c?"),
+            ("CONFIG", "2w2c_small", "did you mean configs/cosim/2w2c_small.json?"),
             ("SCENE", "rom", "did you mean room?"), ("SCENE", "tuor", "did you mean examples/tour.obj?"),
             ("SCENE", "examples/tuor.obj", "did you mean examples/tour.obj?"), ("SCENE", "none.glb", "no such scene"),
         ):  # fmt: skip
