@@ -46,7 +46,7 @@ def chosen(listed, name):
     """Numbers of the tests that `name` stands for, as ctest counts."""
     numbered = list(enumerate(listed, 1))
     cases = [number for number, test in numbered if is_case(test) and program(test) == name and not is_long(test)]
-    patterns = (name, f"{name}.*", f"{name}/*", f"proof_{name}")
+    patterns = (name, f"{name}.*", f"{name}/*", f"*/{name}.*", f"proof_{name}")
     return cases or [
         number
         for number, test in numbered
@@ -67,10 +67,11 @@ def with_fixtures(listed, numbers):
 
 def targets(build, run):
     """What is built for these tests: the programs that their commands name, and the one that scripts expect; nothing,
-    which is all, where one looks into the whole folder or at what benches are made of.
+    which is all, where one looks into the whole folder or at what benches are made of. Some build their own.
     """
     build = os.path.abspath(build)
-    words = {word.split("=")[-1] for test in run for word in test.get("command", [])}
+    others = [test for test in run if program(test) != "built_test.sh"]
+    words = {word.split("=")[-1] for test in others for word in test.get("command", [])}
     inside = {os.path.relpath(word, build) for word in words if word == build or word.startswith(build + os.sep)}
     if any(place == "." or place.startswith("tb" + os.sep) for place in inside):
         return []

@@ -21,11 +21,13 @@ TESTS = """
 add_test(Sums.Add "/bin/true" "--gtest_filter=Sums.Add")
 add_test(Sums.Large "/bin/false" "--gtest_filter=Sums.Large")
 set_tests_properties(Sums.Large PROPERTIES LABELS "long-2")
+add_test(All/Products.Multiply/3 "/bin/true" "--gtest_filter=All/Products.Multiply/3")
 add_test(page_a "/bin/echo")
 add_test(page_b "/bin/false")
 add_test(page_c "/bin/echo" "@/raypool_faults" "@/out")
 set_tests_properties(page_c PROPERTIES FIXTURES_REQUIRED unit)
 add_test(page_d "/bin/echo" "@")
+add_test(page_e "@/built_test.sh" "@" "own")
 add_test(unit "/bin/echo" "PROGRAM=@/raypool-tables")
 set_tests_properties(unit PROPERTIES FIXTURES_SETUP unit)
 add_test(proof_queue "/bin/echo")
@@ -43,6 +45,7 @@ class Chosen(unittest.TestCase):
         script = pathlib.Path(self.build, "build.sh")
         script.write_text(f'#!/bin/sh\nshift\necho "$@." >> {log}\n')
         script.chmod(0o755)
+        pathlib.Path(self.build, "built_test.sh").symlink_to("/bin/true")
         self.addCleanup(setattr, one_test, "BUILD_SCRIPT", one_test.BUILD_SCRIPT)
         one_test.BUILD_SCRIPT = script
         self.built = lambda: log.read_text().splitlines() if log.exists() else []
@@ -52,13 +55,14 @@ class Chosen(unittest.TestCase):
         return [listed[number - 1]["name"] for number in one_test.chosen(listed, name)]
 
     def test_a_program_is_its_cases_without_the_long_ones(self):
-        self.assertEqual(self.names("true"), ["Sums.Add"])
+        self.assertEqual(self.names("true"), ["Sums.Add", "All/Products.Multiply/3"])
         self.assertEqual(self.names("false"), [])
 
     def test_a_name_is_a_test_a_suite_a_pattern_or_a_proof(self):
         self.assertEqual(self.names("page_a"), ["page_a"])
-        self.assertEqual(self.names("page_*"), ["page_a", "page_b", "page_c", "page_d"])
+        self.assertEqual(self.names("page_*"), ["page_a", "page_b", "page_c", "page_d", "page_e"])
         self.assertEqual(self.names("Sums"), ["Sums.Add", "Sums.Large"])
+        self.assertEqual(self.names("Products"), ["All/Products.Multiply/3"])
         self.assertEqual(self.names("queue"), ["proof_queue"])
         self.assertEqual(self.names("page"), [])
 
@@ -67,9 +71,10 @@ class Chosen(unittest.TestCase):
             self.assertEqual(one_test.main(self.build, name) == 0, passes, name)
 
     def test_only_what_runs_is_built(self):
-        for name in ("true", "page_a", "page_c", "page_d"):
+        for name in ("true", "page_a", "page_c", "page_d", "page_e"):
             one_test.main(self.build, name)
-        self.assertEqual(self.built(), ["true.", "raypool.", "raypool raypool-tables raypool_faults.", "."])
+        self.assertEqual(self.built(), ["true.", "raypool.", "raypool raypool-tables raypool_faults.", ".",
+                                        "raypool."])  # fmt: skip
 
     def test_a_name_of_nothing_is_refused_and_nothing_is_built_for_it(self):
         for name, near in (("pool_tset", "pool_test"), ("page_f", "page_"), ("nothing", "")):
