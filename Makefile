@@ -81,8 +81,6 @@ ifneq (,$(findstring $(space),$(BUILD)))
   $(error BUILD=$(BUILD) contains a space, which Verilator's makefiles cannot handle: choose another folder)
 endif
 RAYPOOL := $(BUILD)/raypool
-# One at a time in a folder: a second make waits here.
-LOCKED := flock $(BUILD)/.lock
 # Benches with runs of hours, which are worth an optimised build.
 OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/benches ON \
   -DRAYPOOL_BENCHES_OPTIMISED=ON
@@ -117,7 +115,7 @@ FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
 
 .PHONY: help help-all sim compare run cosim configurations faults unit test test-long lint format
 .PHONY: bench clean
-.PHONY: setup-% program configured-% checked-frame
+.PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth isa diagrams quoted docs
 .PHONY: package bench-native synth-module follow tour chip-frames
 .PHONY: traverser-trees
@@ -148,11 +146,13 @@ help-all: ## every target and variable
 	  /^#: / { line = substr($$0, 4) }' Makefile $(STUDIES)
 
 # What cannot be right is refused before anything is installed or built for it.
-checked-frame:
-	@scripts/check_frame.sh
+WITH_FRAME := sim fidelity pareto fit
+WITH_CONFIG := run cosim unit synth synth-replay synth-prove
+checked-%:
+	@scripts/check_values.sh $* $(if $(filter $*,$(WITH_CONFIG)),CONFIG)
 
 # An environment may hold a TIME of its own, for time(1).
-sim: checked-frame setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
+sim: checked-sim setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
 	$(call built,$(DRAWS),what draws; the first time this takes about two minutes)
 	@RAYPOOL=$(BUILD)/$(DRAWS) $(UNIT_OF_ENGINE) $(OF_FRAME)
 	@$(BUILD)/$(DRAWS) sim $(call options,$(FRAME) SHADERS SPP ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
@@ -165,7 +165,7 @@ compare: setup-sim program ## two runs beside each other: A=FOLDER_OR_REPORT B=.
 #: variables of make run: CONFIG, SET, ENGINE
 #:   KERNEL=saxpy|matmul|FILE.asm  with ARGS="--n 1000", or what a file needs
 export KERNEL ?= saxpy
-run: setup-sim program ## run a compute kernel, check its results, print its cycles
+run: checked-run setup-sim program ## run a compute kernel, check its results, print its cycles
 	@$(UNIT_OF_ENGINE)
 	@$(RAYPOOL) run "$$KERNEL" $(call options,CONFIG SET ENGINE) $(ARGS)
 
@@ -177,7 +177,7 @@ export PROGRAMS ?= 1000
 # exported is no call.
 ONE_MACHINE := $(filter command $(if $(filter 0,$(MAKELEVEL)),environment),\
   $(foreach name,CONFIG CUS SET,$(firstword $(origin $(name)))))
-cosim: setup-sim program ## random programs, hardware against model, on a set of small machines, or CONFIG
+cosim: checked-cosim setup-sim program ## random programs, hardware against model, on a set of small machines, or CONFIG
 	@$(if $(ONE_MACHINE),$(UNIT) $(call options,CUS),scripts/cosim_units.sh)
 	@$(RAYPOOL) cosim $(call options,$(if $(ONE_MACHINE),CONFIG SET CUS) PROGRAMS SEED COVERAGE) $(ARGS)
 
@@ -242,7 +242,7 @@ isa: setup-sim configured-OFF ## write what is derived from the tables of instru
 diagrams: setup-sim setup-test program ## draw docs/images/*.svg: the unit, the chip, and the stages of a run in Icarus
 	@PYTHONPATH=scripts python3 -m diagrams $(RAYPOOL) $(BUILD)/diagrams
 
-unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms; BOUNDARY=chip: the whole chip)
+unit: checked-unit setup-sim program ## Verilate CUS units of CONFIG (WAVES=1: with waveforms; BOUNDARY=chip: a chip)
 	@$(UNIT) $(OF_FRAME) $(ARGS)
 
 #: variables of make synth, synth-replay and synth-prove: CONFIG, SET
@@ -251,15 +251,15 @@ unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with w
 #:   CLOCK=NS                      LIBERTY and CLOCK                           those of constraints/
 #:   MEMORIES=macros|flops|FOLDER  a folder has Liberty files                  macros
 #: variables of make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER  ROUNDS=0..8
-synth: setup-sim setup-synth program ## area, timing and power of CONFIG from open tools (CHIP=1: of the whole chip)
+synth: checked-synth setup-sim setup-synth program ## area, timing and power of CONFIG from open tools (CHIP=1: a chip)
 	@$(SYNTH) report $(call options,CONFIG SET $(LIBRARY) AGAINST RUN ROUNDS OUT) $(SYNTH_CHIP) $(POWER_FLAG) $(ARGS)
 
 #: variable of make synth-replay:  BREAK=N: the cell that is swapped
-synth-replay: setup-sim setup-synth program ## run the mapped netlist in lockstep; BREAK=1: a broken one must fail
+synth-replay: checked-synth-replay setup-sim setup-synth program ## run the netlist in lockstep; BREAK=1: broken
 	@$(SYNTH) replay $(call options,CONFIG SET $(LIBRARY) BREAK) $(SYNTH_CHIP) $(ARGS)
 
 #: variable of make synth-prove:  ONLY=BLOCK,BLOCK
-synth-prove: setup-sim setup-synth program ## prove each mapped block equal to its RTL
+synth-prove: checked-synth-prove setup-sim setup-synth program ## prove each mapped block equal to its RTL
 	@$(SYNTH) prove $(call options,CONFIG SET $(LIBRARY) ONLY) $(SYNTH_CHIP) $(ARGS)
 
 #: variables of make synth-module: LIBERTY, CLOCK, MEMORIES
@@ -272,9 +272,10 @@ synth-module: setup-synth ## area and slack of one module for each of PARAMETERS
 growth: setup-sim setup-synth program ## area against warps, lanes, ALUs; what each feature costs
 	@$(SYNTH) growth $(call options,PLAN OUT) $(ARGS)
 
-test: setup-sim setup-test setup-synth configured-ON ## what guards a change
-	@scripts/build.sh $(BUILD)
-	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE '^long-'
+#: variable of make test:  ONLY=NAME: a test or test program that docs/develop/where.md names, or report_*
+test: setup-sim setup-test setup-synth configured-ON ## what guards a change; ONLY=NAME: one test of it
+	@$(if $(ONLY),scripts/one_test.py $(BUILD) "$$ONLY",scripts/build.sh $(BUILD); \
+	  ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE '^long-')
 
 #: variable of make test-long:  SHARE=1..10: only this tenth of the tests
 test-long: setup-sim setup-test setup-synth setup-lint configured-ON ## the other tests; SHARE=1..10: a tenth
@@ -335,7 +336,7 @@ configured-%:
 	@mkdir -p $(BUILD) 2> /dev/null && [ -w $(BUILD) ] || \
 	  { echo 'make: the build folder "$(BUILD)" cannot be written: choose another one with BUILD=/path/elsewhere' >&2; \
 	    exit 1; }
-	@$(LOCKED) scripts/configure.sh $(BUILD) $*
+	@scripts/configure.sh $(BUILD) $*
 
 program: configured-OFF
 	$(call built,raypool,raypool; the first time this takes about three minutes)

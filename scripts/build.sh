@@ -11,8 +11,7 @@ if [ -n "$was" ]; then
   echo "build.sh: the build folder \"$build\" was made for $was: let make, or scripts/configure.sh, configure it" >&2
   exit 1
 fi
-exec 9> "$build/.lock"
-flock 9
+take_turn "$build"
 width=$(tput cols 2> /dev/null || echo 80)
 show() {
   local shown=

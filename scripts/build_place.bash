@@ -1,6 +1,16 @@
-# Which place a build folder was made for. CMake writes absolute paths into it: in a checkout that was copied or renamed
-# they lead to the old one, where Ninja would configure and build.
+# Which place a build folder was made for, and whose turn it is there. CMake writes absolute paths into it: in a
+# checkout that was copied or renamed they lead to the old one, where Ninja would configure and build.
 # shellcheck shell=bash
+
+# Until the caller ends no other one configures or builds in the folder; says so where that takes longer than a moment:
+# take_turn BUILD; what the caller starts gets 9>&-
+take_turn() {
+  exec 9> "$1/.lock"
+  flock -w 1 9 || {
+    echo "another make builds in the folder \"$1\": waiting for it" >&2
+    flock 9
+  }
+}
 
 # Where the checkout or the folder was, if it is another one than this script's and BUILD: made_elsewhere BUILD
 made_elsewhere() {

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Configures the build folder: scripts/configure.sh BUILD TESTS [OPTION]..., TESTS = ON or OFF. ON once
-# stays ON; nothing is done when it fits. A folder that was made for another checkout is configured again.
-# OPTION: for CMake, of a folder that does not exist yet.
+# stays ON; nothing is done when it fits. A folder that was made for another checkout is configured again. A second one
+# in the same folder waits. OPTION: for CMake, of a folder that does not exist yet.
 set -eu -o pipefail
 build=$1 tests=$2
 shift 2
@@ -9,6 +9,8 @@ cache=$build/CMakeCache.txt
 # shellcheck source=scripts/build_place.bash
 . "$(dirname "$0")/build_place.bash"
 kept=()
+mkdir -p "$build"
+take_turn "$build"
 leave_place "$build"
 [[ " ${kept[*]} " != *' -DRAYPOOL_TESTS:BOOL=ON '* ]] || tests=ON
 if [ -f "$cache" ] && [ -f "$build/build.ninja" ]; then
@@ -20,8 +22,7 @@ if [ -f "$cache" ] && [ -f "$build/build.ninja" ]; then
   fi
   [ "$tests" = ON ] || tests=$(sed -n 's/^RAYPOOL_TESTS:BOOL=//p' "$cache")
 fi
-mkdir -p "$build"
 log=$build/configure.log
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${kept[@]}" -DRAYPOOL_TESTS="$tests" "$@" > "$log" 2>&1 ||
-  { cat "$log" >&2; exit 1; }
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${kept[@]}" -DRAYPOOL_TESTS="$tests" "$@" \
+  > "$log" 2>&1 9>&- || { cat "$log" >&2; exit 1; }
 touch "$build/build.ninja"

@@ -7,4 +7,5 @@
 set -eu -o pipefail
 cd "$(dirname "$0")/.."
 config=$1; shift
-"${RAYPOOL:-${BUILD:-build}/raypool}" unit --config "$config" "$@" | { grep -v 'is up to date$' || true; }
+"${RAYPOOL:-${BUILD:-build}/raypool}" unit --config "$config" "$@" |
+  { grep --line-buffered -v 'is up to date$' || true; }

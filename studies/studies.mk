@@ -12,7 +12,7 @@ GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 #:   LEVELS="native model ..."     only these                                  all
 #:   RUNS=N                        times that each draws                       1
 #:   OUT=FOLDER
-fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error
+fidelity: checked-fidelity setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error
 	@$(PYTHON) studies/fidelity.py $(call options,$(FRAME) LEVELS RUNS OUT) $(ARGS)
 
 #: of make intervals:  ARGS="--samples 50 --traverser hardware": seeds of each frame, 200 if not given; else static
@@ -23,7 +23,7 @@ intervals: setup-sim program ## do the intervals of ENGINE=sampled have the cove
 #:   MACHINES="24 20-flush ..."    only these                                  what one chooses among
 #:   JOBS=N                        blocks that are mapped at a time            all cores
 #:   OUT=FOLDER
-pareto: setup-sim setup-synth program ## area against picture error: arithmetic modes and fits of a frame
+pareto: checked-pareto setup-sim setup-synth program ## area against picture error: arithmetic modes and fits of a frame
 	@$(PYTHON) studies/pareto.py $(call options,$(FRAME) MACHINES JOBS OUT) $(ARGS)
 
 #: variables of make fit: those of the frame
@@ -31,7 +31,7 @@ pareto: setup-sim setup-synth program ## area against picture error: arithmetic 
 #:   AREA=1                        what each change saves in area
 #:   POWER=1                       area, and timing and power before and after
 #:   OUT=FILE                      for the configuration
-fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configuration with only that
+fit: checked-fit setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configuration with only that
 	@mkdir -p $(BUILD)/out
 	@$(RAYPOOL) fit $(call options,$(FRAME) SLOWER OUT) --json $(BUILD)/out/fit.json $(ARGS)
 	@$(if $(FIT_SETUP),$(SYNTH) fit $(BUILD)/out/fit.json $(POWER_FLAG))

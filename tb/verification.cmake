@@ -79,6 +79,7 @@ if(YOSYS)
 endif()
 
 add_test(NAME shares COMMAND ${scripts}/tests/shares_test.py ${CMAKE_BINARY_DIR})
+add_test(NAME one_test COMMAND ${scripts}/tests/one_test_test.py ${CMAKE_BINARY_DIR})
 
 # Every program that has once shown a fault.
 file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions

@@ -3,6 +3,7 @@ import glob
 import json
 import os
 import subprocess
+from collections import Counter
 from dataclasses import dataclass, field
 
 from .errors import SynthError, need, run
@@ -31,6 +32,12 @@ class Kind:
     @property
     def memory(self):
         return self.base in MEMORIES
+
+
+def in_words(kinds):
+    """Kinds for a line of progress: modules, how many kinds of each where they are several; names have parameters."""
+    counted = Counter(kind.base for kind in kinds)
+    return ", ".join(base if n == 1 else f"{base} ({n} kinds)" for base, n in sorted(counted.items()))
 
 
 def rtl_files():

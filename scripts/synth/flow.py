@@ -287,7 +287,7 @@ def win_back(design, work, slack):
         design.efforts.update({i: efforts[0] for i, efforts in lower.items()})
         map_design(design)
         reached = time_design(design, work)
-        names = ", ".join(sorted(design.kinds[i].name for i in lower))
+        names = elaborate.in_words(design.kinds[i] for i in lower)
         design.phases.note(f"slack {reached:+.3f} ns; for area: {names}")
         if reached >= needed:
             design.efforts = {i: effort for i, effort in design.efforts.items() if effort}
@@ -313,7 +313,7 @@ def close_timing(design, work, slack):
         more = next_effort(design, on_failing_paths(design, work))
         if not more:
             break
-        names = ", ".join(sorted(design.kinds[i].name for i in more))
+        names = elaborate.in_words(design.kinds[i] for i in more)
         turn = f"round {number} of at most {design.options.rounds}"
         design.phases.note(f"{turn}: slack {slack:+.3f} ns; for speed: {names}")
         design.efforts.update({i: design.efforts.get(i, 0) + 1 for i in more})

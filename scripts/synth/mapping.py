@@ -295,5 +295,5 @@ write_json {result}
                 except SynthError as error:
                     pool.shutdown(cancel_futures=True)
                     raise SynthError(f"{kind.name} cannot be mapped: {error}") from error
-                self.phases.note(f"block {count} of {len(missing)}: {kind.name}{left.after(kind)}")
+                self.phases.note(f"block {count} of {len(missing)}: {kind.base}{left.after(kind)}")
         return {k.identity: self.kept(k, efforts.get(k.identity, 0)) for k in kinds}

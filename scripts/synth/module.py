@@ -1,4 +1,5 @@
 """A module of rtl/ alone, once for each set of parameters: area and slack, by the flow of the unit."""
+import difflib
 import os
 import re
 
@@ -20,10 +21,22 @@ def parsed(text):
     return found
 
 
+def named(name):
+    """The module that the user means, with the prefix or without; what is none is refused with the nearest."""
+    name = name.removeprefix(elaborate.PREFIX)
+    files = [os.path.basename(path) for path in elaborate.rtl_files()]
+    known = [os.path.splitext(file)[0].removeprefix(elaborate.PREFIX) for file in files]
+    if not name:
+        raise SynthError("name a module of rtl/: MODULE=box_pipe")
+    if name not in known:
+        near = difflib.get_close_matches(name, known, 1)
+        raise SynthError(f"{name}: no such module in rtl/{f': did you mean {near[0]}?' if near else ''}")
+    return name
+
+
 def synthesise(name, rows, options):
     """[(parameters as text, design)], in the order of `rows`; without any, the module as it is."""
-    if f"{elaborate.PREFIX}{name}.v" not in map(os.path.basename, elaborate.rtl_files()):
-        raise SynthError(f"{name}: no such module in rtl/")
+    name = named(name)
     found = []
     for text in rows or [""]:
         library = Library(options.liberty)

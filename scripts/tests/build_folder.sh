@@ -30,6 +30,23 @@ if PATH=$folder/bin:$PATH scripts/build.sh "$folder" all 2> "$log" || [ "$(cat "
 fi
 echo "ok: a build that fails"
 
+# Who waits for another one is told so, by what configures and by what builds.
+printf '#!/bin/sh\n' > "$folder/bin/cmake"
+for waiting in "configure.sh $folder/shared OFF" "build.sh $folder/shared"; do
+  mkdir -p "$folder/shared"
+  flock "$folder/shared/.lock" sleep 3 &
+  until ! flock -n "$folder/shared/.lock" true; do sleep 0.1; done
+  # shellcheck disable=SC2086 # words
+  if ! PATH=$folder/bin:$PATH scripts/$waiting 2> "$log" ||
+    [ "$(cat "$log")" != "another make builds in the folder \"$folder/shared\": waiting for it" ] ||
+    ! flock -n "$folder/shared/.lock" true; then
+    echo "FAILED: $waiting in a folder where another one builds:"
+    cat "$log"
+    exit 1
+  fi
+done
+echo "ok: a folder where another one builds"
+
 read_only() {
   # shellcheck disable=SC2016 # the inner shell expands them
   unshare --mount bash -eu -c 'root=$PWD

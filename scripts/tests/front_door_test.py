@@ -11,6 +11,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 STUDIES = "studies/studies.mk"
 MAKEFILE = (ROOT / "Makefile").read_text() + (ROOT / STUDIES).read_text()
 README = (ROOT / "README.md").read_text()
+VALUES = (ROOT / "scripts/check_values.sh").read_text()
+WITH_CONFIG = re.search(r"^WITH_FRAME := (.*)\nWITH_CONFIG := (.*)", MAKEFILE, re.M).expand(r"\1 \2").split()
 DEFAULTS = re.findall(r"^(?:export )?([A-Z_]+) \?=", MAKEFILE, re.M)
 
 
@@ -100,7 +102,7 @@ class Values(unittest.TestCase):
         (self.folder / "studies").mkdir()
         for name in ("Makefile", STUDIES):
             shutil.copy(ROOT / name, self.folder / name)
-        for name in ("setup.sh", "configure.sh", "build.sh", "unit.sh", "check_frame.sh", "raypool"):
+        for name in ("setup.sh", "configure.sh", "build.sh", "unit.sh", "check_values.sh", "raypool"):
             path = self.folder / ("build" if name == "raypool" else "scripts") / name
             path.parent.mkdir(exist_ok=True)
             path.write_text("#!/bin/bash\n" + "printf '%s\\n' \"$@\"\n" * (name == "raypool"))
@@ -157,11 +159,11 @@ class Values(unittest.TestCase):
 
 
 class Frames(unittest.TestCase):
-    """What make sim refuses before it builds."""
+    """What make sim, and others that are given a configuration, refuse before they build."""
 
-    def checked(self, **variables):
-        done = subprocess.run([ROOT / "scripts" / "check_frame.sh"], capture_output=True, text=True, check=False,
-                              env={"PATH": "/usr/local/bin:/usr/bin:/bin", **variables})  # fmt: skip
+    def checked(self, *names, target="sim", **variables):
+        done = subprocess.run([ROOT / "scripts" / "check_values.sh", target, *names], capture_output=True, text=True,
+                              check=False, env={"PATH": "/usr/local/bin:/usr/bin:/bin", **variables})  # fmt: skip
         self.assertEqual(done.stdout, "")
         self.assertEqual(done.returncode, 1 if done.stderr else 0)
         self.assertLessEqual(done.stderr.count("\n"), 1)
@@ -188,7 +190,9 @@ class Frames(unittest.TestCase):
             ("THREADS", "0", "from 1 to 256"), ("DETAIL", "fine", "a number"), ("FOV", "wide", "a number"),
             ("EYE", "1,2", "three numbers"), ("UP", "0,1,z", "three numbers"),
             ("VIEW", "configs/views/confrence.json", "did you mean configs/views/conference.json?"),
-            ("CONFIG", "8w8d", "did you mean 8w8c?"), ("CONFIG", "configs/8w8.json", "mean configs/8w8c.json?"),
+            ("CONFIG", "8w8d", "did you mean 8w8c?"),
+            ("CONFIG", "configs/8w8.json", "mean configs/8w8c.json?"), ("CONFIG", "bset_8w8c", "mean best_8w8c?"),
+            ("CONFIG", "2w2c_small", "did you mean configs/cosim/2w2c_small.json?"),
             ("SCENE", "rom", "did you mean room?"), ("SCENE", "tuor", "did you mean examples/tour.obj?"),
             ("SCENE", "examples/tuor.obj", "did you mean examples/tour.obj?"), ("SCENE", "none.glb", "no such scene"),
         ):  # fmt: skip
@@ -204,11 +208,25 @@ class Frames(unittest.TestCase):
             self.assertIn(f"did you mean {folder}/bunny.glb?", self.checked(SCENE="bunyn", SCENES=folder))
             self.assertIn("no such scene", self.checked(SCENE="bunny"))
 
+    def test_only_what_is_named_is_looked_at(self):
+        every = {name: "!" for name in re.findall(r"\b[A-Z]+(?:_[A-Z]+)*\b", VALUES) if name in MAKEFILE}
+        self.assertGreater(len(every), 12)
+        self.assertEqual(self.checked("NONE", target="synth", **every), "")
+        self.assertTrue(self.checked("CONFIG", target="synth", **every).startswith("make synth: CONFIG=!: no conf"))
+
     def test_nothing_is_built_for_what_is_refused(self):
-        done = make("sim", "SIZE=8", "BUILD=/proc/none")
-        self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("make sim: SIZE=8 is not WIDTHxHEIGHT", done.stderr)
-        self.assertNotIn("/proc/none", done.stderr)
+        for target, word, said in (("sim", "SIZE=8", "SIZE=8 is not WIDTHxHEIGHT"), ("fit", "SIZE=8", "SIZE=8 is not"),
+                                   *((target, "CONFIG=4w4d", "CONFIG=4w4d: no configuration of this name")
+                                     for target in WITH_CONFIG)):  # fmt: skip
+            done = make(target, word, "BUILD=/proc/none")
+            self.assertEqual((done.returncode, done.stdout), (2, ""), target)
+            self.assertIn(f"make {target}: {said}", done.stderr)
+            self.assertNotIn("/proc/none", done.stderr)
+
+    def test_every_target_that_is_given_a_configuration_looks_at_it(self):
+        recipes = re.findall(r"^([a-z-]+):.*## .*\n((?:\t.*\n)+)", MAKEFILE, re.M)
+        uses = re.compile(r"options,(CONFIG|\$\(FRAME\))|\$\(UNIT\)")
+        self.assertEqual({name for name, recipe in recipes if uses.search(recipe)}, set(WITH_CONFIG))
 
 
 class Readme(unittest.TestCase):

@@ -329,6 +329,17 @@ class Synthesis(SmallBlocks):
         left = mapping.Remaining(kinds, lambda: next(seconds))
         self.assertEqual([left.after(kind) for kind in kinds], ["", ", about 2 min left", "", ""])
 
+    def test_progress_names_modules_and_counts_their_kinds(self):
+        kinds = [elaborate.Kind(str(n), base, {}, {}, {}, f"{base}_a_bits{n}_b_bits25")
+                 for n, base in enumerate(("multiply_tree", "float_lane", "multiply_tree"))]  # fmt: skip
+        self.assertEqual(elaborate.in_words(kinds), "float_lane, multiply_tree (2 kinds)")
+        printed = []
+        with mock.patch.object(phases, "progress", printed.append), \
+             mock.patch.multiple(mapping.Mapper, map_one=lambda self, kind, effort: kind,
+                                 path=lambda self, kind, effort: f"{self.folder}/{kind.name}"):  # fmt: skip
+            mapping.Mapper(library.Library(), self.folder, 4.0).map_all(kinds[:2])
+        self.assertEqual(sorted(line.split(": ")[-1] for line in printed[1:]), ["float_lane", "multiply_tree"])
+
     def test_a_file_is_reported_by_its_name_and_not_by_its_folder(self):
         options = flow.Options(config="/elsewhere/configurations/4w4c+1_change.json", units=2, rounds=6)
         self.assertEqual(options.title, "4w4c+1_change-chip-2cu")
@@ -417,8 +428,10 @@ class Whole(SmallBlocks):
             (["fit", run], "not what raypool fit --json writes"),
             (["fit", "/no/such.json"], "not what raypool fit --json writes"),
             (["module", "teapot"], "teapot: no such module in rtl/"),
+            (["module", "rp_box_pip"], "box_pip: no such module in rtl/: did you mean box_pipe?"),
+            (["module", ""], "name a module of rtl/: MODULE="),
             (["module", "free_list", "SIZE"], "written BITS=8 or A=1,B=2"),
-            (["module", "free_list", "SPOUT=1"], "free_list has no parameter SPOUT"),
+            (["module", "rp_free_list", "SPOUT=1"], "free_list has no parameter SPOUT"),
         ):
             code, text = self.command(*arguments)
             self.assertEqual(code, 1, text)

@@ -96,6 +96,16 @@ std::string not_among(const std::string& text) {
   return fmt::format("{} is {}: give {}", match[1].str(), match[2].str(), choices);
 }
 
+/// "--programs is many: give a number", of what CLI11 says of a value that it cannot convert; empty otherwise.
+std::string not_converted(const std::string& text) {
+  static const std::regex kNot(R"(Could not convert: (-\S+|\w+) = (.*))"), kNumber(R"([+-]?\d+(\.\d*)?)");
+  std::smatch match;
+  if (!std::regex_match(text, match, kNot)) return "";
+  const bool number = std::regex_match(match[2].first, match[2].second, kNumber);
+  return fmt::format("{} is {}: give a {}", match[1].str(), match[2].str(),
+                     number ? "whole number in its range" : "number");
+}
+
 }  // namespace
 
 std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
@@ -108,6 +118,7 @@ std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
   std::string text = twice;
   if (text.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) text = missing_word(app);
   if (text.empty()) text = not_among(error.what());
+  if (text.empty()) text = not_converted(error.what());
   if (text.empty()) text = error.what();
   return fmt::format("{} ({}{} --help shows what there is)", text, app.get_name(),
                      commands.empty() ? "" : " " + commands.front()->get_name());

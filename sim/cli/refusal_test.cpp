@@ -13,10 +13,12 @@ std::string refusal_of(const std::string& words) {
   app.require_subcommand(1);
   std::string scene, size, kernel, data;
   int units = 1;
+  uint32_t depth = 1;
   bool verilog = false;
   CLI::App* sim = app.add_subcommand("sim", "draw")->group(command_group::kSimulate);
   sim->add_option("--scene,scene", scene);
   sim->add_option("--size", size);
+  sim->add_option("--depth", depth);
   CLI::App* run = app.add_subcommand("run", "compute")->group(command_group::kSimulate);
   run->add_option("kernel", kernel, "saxpy, matmul, or an assembly file")->required();
   run->add_option("data", data, "its data")->required();
@@ -77,6 +79,14 @@ TEST(Refusal, WhatElseIsWrongSaysWhereToLook) {
             "run needs data, its data: raypool run kernel data (raypool run --help shows what there is)");
   EXPECT_EQ(refusal_of("run saxpy data --units 3"),
             "--units is 3: give 1, 2 or 4 (raypool run --help shows what there is)");
+}
+
+TEST(Refusal, WhatIsNoNumberIsToldSo) {
+  EXPECT_EQ(refusal_of("sim --depth many"), "--depth is many: give a number (raypool sim --help shows what there is)");
+  for (const char* value : {"-5", "2.5", "99999999999"})
+    EXPECT_EQ(refusal_of(std::string("sim --depth=") + value),
+              std::string("--depth is ") + value +
+                  ": give a whole number in its range (raypool sim --help shows what there is)");
 }
 
 }  // namespace

@@ -1,14 +1,23 @@
 #!/bin/bash
-# Refuses variables of make sim that cannot be right before anything is built for them: scripts/check_frame.sh
-# Reads them from the environment. What costs more than a look at a file is left to the program: fields of SET, what a
-# scene holds, what an engine can do. Prints one sentence and ends with 1, or prints nothing.
+# Refuses variables of a target of make that cannot be right before anything is built for them:
+# scripts/check_values.sh TARGET [VARIABLE]...; without variables, all of a frame. Reads them from the environment. What
+# costs more than a look at a file is left to the program: fields of SET, what a scene holds, what an engine can do.
+# Prints one sentence and ends with 1, or prints nothing.
 set -eu -o pipefail
 cd "$(dirname "$0")/.."
 
+target=$1
+shift
 refuse() {
-  echo "make sim: $*" >&2
+  echo "make $target: $*" >&2
   exit 1
 }
+if [ $# -gt 0 ]; then
+  for name in SCENE CONFIG SIZE DEPTH CUS TRAVERSER ENGINE BOUNDARY HITS THREADS VIEW EYE LOOK_AT UP FOV LIGHT DETAIL
+  do
+    [[ " $* " == *" $name "* ]] || unset "$name"
+  done
+fi
 
 # The choices that the Makefile lists for a variable, "1|2|4".
 choices() { sed -nE "s/^#:   $1=([a-z0-9|]+)( .*|)$/\1/p" Makefile; }
@@ -70,12 +79,15 @@ if [ -n "$config" ] && [ ! -f "$config" ]; then
   if [[ $config == */* || $config == *.json ]]; then
     [ -e "$config" ] ||
       refuse "CONFIG=$config: there is no such file$(near "$config" "$(dirname "$config")"/*.json "${known[@]}")"
-  elif [[ ! $config =~ ^([A-Za-z][A-Za-z0-9]*_)?[0-9]{1,4}w[0-9]{1,4}c$ ]]; then
+  else
     names=("${known[@]##*/}")
     names=("${names[@]%.json}")
-    [[ " ${names[*]} " == *" $config "* ]] ||
-      refuse "CONFIG=$config: no configuration of this name$(near "$config" "${names[@]}") (give one of configs/," \
-        "NwMc for N warps of M lanes, best_NwMc, or the path of a JSON file)"
+    size='[0-9]{1,4}w[0-9]{1,4}c'
+    [[ " ${names[*]} " == *" $config "* || $config =~ ^$size$ ]] ||
+      { [[ $config =~ ^([A-Za-z][A-Za-z0-9]*)_$size$ ]] && [[ " ${names[*]} " == *" ${BASH_REMATCH[1]} "* ]]; } ||
+      refuse "CONFIG=$config: no configuration of this name$(near "$config" "${names[@]}" "best_${config#*_}" \
+        configs/cosim/*.json) (give one of configs/, NwMc for N warps of M lanes, best_NwMc, or the path of a JSON" \
+        "file)"
   fi
 fi
 
