@@ -184,7 +184,8 @@ void main() {
         const float shine_density = ggx_density(dot(slope, normal), viewer, width);
         vec3 shine_light = fresnel(straight, dot(to_light, slope)) * (shine_density * ggx_visible(cosine, width));
         vec3 matt_light = matt * (cosine / pi);
-        if (lit.likelihood > 0.0) {
+        // No ray goes on from the last hit, so the light is found in this way alone.
+        if (lit.likelihood > 0.0 && hit.depth < raypool_frame.depth) {
           shine_light *= share(lit.likelihood, rounded(shine * shine_density));
           matt_light *= share(lit.likelihood, rounded((1.0 - shine) * (cosine / pi)));
         }
