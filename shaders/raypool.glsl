@@ -81,6 +81,7 @@ layout(set = 0, binding = 2, scalar) uniform RaypoolFrame {
   uint height;
   uint sample_number;   // of this frame: 0 .. samples - 1
   uint samples;         // frames that are added up (--samples); weigh with 1 / samples
+  uint depth;           // of the deepest rays (--depth)
   uint triangles;       // of the scene
   uint lights;          // elements of raypool_lights; at least 1
   float total_weight;   // a triangle light's probability is its area times raypool_luminance(color) / total_weight

@@ -1,6 +1,6 @@
 # What is studied with the machine. The Makefile includes it behind its own variables: those of a frame, the program,
 # and `options`.
-.PHONY: fidelity intervals pareto fit sweep report numerics significands boxes triangles referee extremes
+.PHONY: fidelity intervals pareto fit sweep report numerics significands boxes triangles referee convergence extremes
 
 SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=studies $(PYTHON) -m sweep
 SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
@@ -90,6 +90,13 @@ referee: setup-sim setup-test configured-ON ## hits of hard rays beside rational
 	@$(RAYPOOL) referee $(call options,CASES SEED) --write /dev/stdout | \
 	  $(BUILD)/tb/referee_answers > $(BUILD)/out/referee/Verilog.jsonl
 	@$(BUILD)/raypool_match $(call options,CASES SEED) --answers $(BUILD)/out/referee/Verilog.jsonl $(ARGS)
+
+#: variables of make convergence
+#:   SPP=N                         samples a pixel                             4096
+#:   ARGS="--scenes cornell --size 64x64 --depth 3 ...": ARGS=--help lists them
+convergence: setup-sim setup-test configured-ON ## pictures of SHADERS=path beside a path tracer in double precision
+	@scripts/build.sh $(BUILD) raypool_converge
+	@$(BUILD)/raypool_converge $(call options,SPP) $(ARGS)
 
 EXTREMES = $(RAYPOOL) numerics $(call options,MODE) $(if $(filter chip,$(BOUNDARY)),--config tiny)
 

@@ -25,6 +25,11 @@ const uint RANDOM_LIGHT = 4u;
 const uint RANDOM_PLACE = 5u;  // and 6
 const uint RANDOM_SKY = 7u;
 const uint RANDOM_END = 8u;
+const uint RANDOM_SLOPE = 9u;  // and 10
+
+vec3 random_of(uint seed, uint which) {
+  return random_direction(raypool_random(seed, which), raypool_random(seed, which + 1u));
+}
 
 float largest(vec3 v) { return max(max(v.x, v.y), v.z); }
 
@@ -148,20 +153,21 @@ void main() {
     }
     const float width = max(roughness * roughness, 0.01);
     const vec3 straight = mix(vec3(0.04), color.rgb, metallic);
-    const vec3 reflected = fresnel(straight, viewer);
-    const vec3 matt = (1.0 - metallic) * (1.0 - reflected) * color.rgb;
-    const float shine = largest(reflected) / max(largest(reflected) + largest(matt), 1e-6);
+    const vec3 slope = ggx_slope(-ray, normal, width, random_of(seed, RANDOM_SLOPE));
+    const float straightness = max(-dot(ray, slope), 0.0);
+    const vec3 mirrored = ray + 2.0 * straightness * slope;
+    const float visible = ggx_visible(max(dot(mirrored, normal), 0.0), width);
+    // What such slopes do not reflect goes into the surface: in the mean over slopes, all that the highlight leaves.
+    const vec3 matt = (1.0 - metallic) * (1.0 - fresnel(vec3(0.04), straightness).x * visible) * color.rgb;
 
-    const vec3 random =
-        random_direction(raypool_random(seed, RANDOM_DIRECTION), raypool_random(seed, RANDOM_DIRECTION + 1u));
+    const float reflected = largest(fresnel(straight, viewer));
+    const float shine = reflected / max(reflected + (1.0 - metallic) * (1.0 - reflected) * largest(color.rgb), 1e-6);
     if (raypool_random(seed, RANDOM_SIDE) < shine) {
-      const vec3 slope = ggx_slope(-ray, normal, width, random);
-      const float cosine = max(-dot(ray, slope), 0.0);
-      bounce = ray + 2.0 * cosine * slope;
-      passed = fresnel(straight, cosine) * (ggx_visible(max(dot(bounce, normal), 0.0), width) / shine);
+      bounce = mirrored;
+      passed = fresnel(straight, straightness) * (visible / shine);
       bounce_density = rounded(shine * ggx_density(dot(slope, normal), viewer, width));
     } else {
-      bounce = cosine_direction(normal, random);
+      bounce = cosine_direction(normal, random_of(seed, RANDOM_DIRECTION));
       passed = matt / (1.0 - shine);
       bounce_density = rounded((1.0 - shine) / pi * max(dot(bounce, normal), 0.0));
     }
@@ -180,11 +186,12 @@ void main() {
       const vec3 to_light = normalize(lit.direction);
       const float cosine = dot(to_light, normal);
       if (cosine > 0.0 && dot(to_light, face) > 0.0) {
-        const vec3 slope = normalize(to_light - ray);
-        const float shine_density = ggx_density(dot(slope, normal), viewer, width);
-        vec3 shine_light = fresnel(straight, dot(to_light, slope)) * (shine_density * ggx_visible(cosine, width));
+        const vec3 half_way = normalize(to_light - ray);
+        const float shine_density = ggx_density(dot(half_way, normal), viewer, width);
+        vec3 shine_light = fresnel(straight, dot(to_light, half_way)) * (shine_density * ggx_visible(cosine, width));
         vec3 matt_light = matt * (cosine / pi);
-        if (lit.likelihood > 0.0) {
+        // No ray goes on from the last hit, so the light is found in this way alone.
+        if (lit.likelihood > 0.0 && hit.depth < raypool_frame.depth) {
           shine_light *= share(lit.likelihood, rounded(shine * shine_density));
           matt_light *= share(lit.likelihood, rounded((1.0 - shine) * (cosine / pi)));
         }

@@ -41,6 +41,7 @@ FrameBuffer drawn_by(const std::string& set_name, const Scene& scene, const Draw
   ShaderFrame shader_frame;
   shader_frame.width = shader_frame.height = kSize;
   shader_frame.samples = drawing.samples;
+  shader_frame.depth = drawing.depth;
   shader_frame.camera = camera_numbers(scene, kSize, kSize);
   shader_frame.offset = as_float(camera_arguments(scene, kSize, kSize, options.contents)[argument::kOffset]);
   const shader::Resources resources = build_shader_memory(image, scene, *set, shader_frame);

@@ -112,6 +112,7 @@ ShaderValues shader_values(const Scene& scene, const Surfaces& surfaces, const S
           {"height", whole_value(frame.height)},
           {"sample", sample},
           {"samples", whole_value(frame.samples)},
+          {"depth", whole_value(frame.depth)},
           {"triangles", whole_value(size32(scene.triangles))},
           {"lights", whole_value(size32(lights.lights))},
           {"total_weight", float_value(static_cast<double>(lights.total_weight))},
