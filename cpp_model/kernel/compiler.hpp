@@ -21,6 +21,8 @@ void fold_addresses(Function& function);
 void join_conditions(Function& function);
 void sink_leaves(Function& function);
 void remove_dead(Function& function);
+/// Of code under masks that no lane ever has; those must be known before others are joined.
+void remove_unreached(Function& function);
 
 /// Machine registers and predicates of a function's virtual ones.
 struct Allocation {

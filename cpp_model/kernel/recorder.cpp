@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "isa/input_error.hpp"
@@ -42,7 +43,7 @@ int Recorder::new_register() {
 }
 
 int Recorder::new_predicate() {
-  predicate_masks_.push_back(guard_);
+  predicate_masks_.push_back({guard_, blocks_.empty() ? 0 : blocks_.back().number});
   return function_.predicates++;
 }
 
@@ -184,8 +185,15 @@ void Recorder::join(int predicate) {
   guard_ = guard;
 }
 
+/// Whether the predicate is 0 outside the current mask.
+bool Recorder::is_within_mask(int predicate) const {
+  const Mask& mask = predicate_masks_[predicate];
+  const auto is_open = [&](const Block& block) { return block.number == mask.block; };
+  return mask.guard == guard_ && (mask.block == 0 || std::any_of(blocks_.begin(), blocks_.end(), is_open));
+}
+
 Guard Recorder::mask_for(const Condition& condition) {
-  const bool inside_mask = predicate_masks_[condition.predicate] == guard_;
+  const bool inside_mask = is_within_mask(condition.predicate);
   if (guard_.all() || (inside_mask && !condition.negated)) return {condition.predicate, condition.negated};
   return {materialise(condition), false};
 }
@@ -198,6 +206,7 @@ void Recorder::open(const Condition& condition, const Location& where) {
   block.where = where;
   guard_ = mask_for(condition);
   block.first_op = function_.ops.size();
+  block.number = ++opened_;
   blocks_.push_back(block);
 }
 
@@ -244,7 +253,7 @@ void Recorder::end_if() {
 
 void Recorder::begin_loop(int condition, const Location& where) {
   // The loop's predicate shrinks as threads leave; outside the mask it has to be 0 from the start.
-  if (!(predicate_masks_[condition] == guard_)) condition = materialise({condition, false, where});
+  if (!is_within_mask(condition)) condition = materialise({condition, false, where});
   Block block;
   block.outer = guard_;
   block.locked = condition;
@@ -253,6 +262,7 @@ void Recorder::begin_loop(int condition, const Location& where) {
   Op& op = emit(Opcode::Loop, where);
   op.label = block.label = function_.labels++;
   block.first_op = function_.ops.size();
+  block.number = ++opened_;
   blocks_.push_back(block);
 }
 

@@ -85,8 +85,16 @@ class Recorder {
     size_t first_op = 0;
     int label = kNothing;
     Location where;
+    int number = 0;  // of all blocks
+  };
+  /// Outside `guard` a virtual predicate is 0 as long as the block is open in which it was written: what jumps over the
+  /// block leaves the predicate as it was.
+  struct Mask {
+    Guard guard;
+    int block = 0;  // 0: none
   };
 
+  bool is_within_mask(int predicate) const;
   Guard mask_for(const Condition& condition);
   void open(const Condition& condition, const Location& where);
   void close_body();
@@ -98,9 +106,10 @@ class Recorder {
   bool fused_;
   Function function_;
   Guard guard_;
-  std::vector<Guard> register_masks_;   // mask under which a virtual register was declared
-  std::vector<Guard> predicate_masks_;  // mask outside which a virtual predicate is 0
+  std::vector<Guard> register_masks_;  // mask under which a virtual register was declared
+  std::vector<Mask> predicate_masks_;  // of virtual predicates
   std::vector<Block> blocks_;
+  int opened_ = 0;  // blocks so far
   Location last_, place_;
 };
 

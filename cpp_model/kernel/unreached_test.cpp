@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "kernel/compiler.hpp"
+
+namespace raypool::kernel {
+namespace {
+
+/// What is left of a kernel whose `body` gets a predicate that no lane has.
+Function left_of(const std::function<void(Recorder&, RecordedKernel&, int)>& body) {
+  Recorder recorder("left");
+  RecordedKernel kernel(recorder);
+  const int nobody = recorder.declare_predicate();
+  body(recorder, kernel, nobody);
+  Function function = recorder.finish();
+  remove_unreached(function);
+  return function;
+}
+
+int count(const Function& function, Opcode opcode) {
+  return static_cast<int>(
+      std::count_if(function.ops.begin(), function.ops.end(), [&](const Op& op) { return is(op, opcode); }));
+}
+
+void store_some(RecordedKernel& kernel, int stores) {
+  for (int i = 0; i < stores; ++i) kernel.store(kernel.thread(), 4 * i, kernel.block());
+}
+
+TEST(Unreached, GoesWithItsJumpAndAllThatDependsOnIt) {
+  for (const int stores : {1, 9}) {
+    const Function function = left_of([&](Recorder& recorder, RecordedKernel& kernel, int nobody) {
+      recorder.begin_if({nobody, false, {}});
+      store_some(kernel, stores);
+      const auto inner = kernel.thread() == 3;
+      recorder.begin_if({inner.number(), false, {}});
+      store_some(kernel, stores);
+      recorder.end_if();
+      recorder.end_if();
+    });
+    EXPECT_EQ(count(function, Opcode::St), 0) << stores;
+    EXPECT_EQ(count(function, Opcode::Jnone), 0) << stores;
+    EXPECT_EQ(count(function, Opcode::Exit), 1);
+  }
+}
+
+TEST(Unreached, IsNotTheOtherArm) {
+  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int nobody) {
+    recorder.begin_if({nobody, false, {}});
+    store_some(kernel, 8);
+    recorder.begin_else();
+    store_some(kernel, 7);
+    recorder.end_if();
+  });
+  EXPECT_EQ(count(function, Opcode::St), 7);
+}
+
+TEST(Unreached, IsNotWhatLanesJoinLater) {
+  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int nobody) {
+    const auto some = kernel.thread() == 3;
+    const int again = recorder.materialise({some.number(), false, {}});
+    recorder.begin_loop(again, {});
+    recorder.begin_if({nobody, false, {}});
+    store_some(kernel, 8);
+    recorder.end_if();
+    recorder.join(nobody);  // from the second round on
+    recorder.end_loop(some.number(), false);
+  });
+  EXPECT_EQ(count(function, Opcode::St), 8);
+}
+
+TEST(Unreached, IsALoopThatNobodyEnters) {
+  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int nobody) {
+    recorder.begin_loop(nobody, {});
+    store_some(kernel, 3);
+    recorder.end_loop(nobody, false);
+    store_some(kernel, 1);
+  });
+  EXPECT_EQ(count(function, Opcode::St), 1);
+  EXPECT_EQ(count(function, Opcode::Loop), 0);
+}
+
+TEST(Unreached, KeepsWhatChangesTheSlicesOfAWarp) {
+  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int nobody) {
+    recorder.begin_if({nobody, false, {}});
+    kernel.set_word(3, kernel.thread());
+    kernel.ray_out();
+    recorder.end_if();
+  });
+  EXPECT_EQ(count(function, Opcode::Rst), 0);
+  EXPECT_EQ(count(function, Opcode::Rout), 1);
+}
+
+}  // namespace
+}  // namespace raypool::kernel
