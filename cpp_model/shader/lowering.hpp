@@ -17,17 +17,68 @@
 #include "machine/chip/ray_kernel.hpp"
 #include "shader/module.hpp"
 #include "shader/values.hpp"
+#include "shader/waits.hpp"
 
 namespace raypool::shader {
-
-/// gl_RayFlagsTerminateOnFirstHitEXT and gl_RayFlagsSkipClosestHitShaderEXT: of a ray that asks whether it meets
-/// anything.
-inline constexpr uint32_t kShadowRay = 4 | 8;
 
 /// Which of the ray kernels a shader becomes. Throws InputError with file and line for what cannot be done.
 /// `layout`: of the intersections that it imports.
 kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
                        const RecordLayout& layout = {});
+
+/// Shaders that wait for their rays: module and sites of each.
+struct WaitingShader {
+  const Module& module;
+  const Waits& waits;
+};
+/// Decides of hits of rays to these closest-hit shaders whether they count.
+struct AnyHitShader {
+  const Module& module;
+  std::vector<uint32_t> closest_hits;
+};
+struct WaitingShaders {
+  WaitingShader ray_generation;
+  std::vector<WaitingShader> misses, closest_hits;  ///< by the index of a traceRayEXT
+  std::vector<AnyHitShader> any_hits;
+};
+
+/// CastEye or CastSecondary of shaders that wait: the first begins paths, the second goes on with them.
+kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& resources, RayKernel kernel,
+                               const KernelTarget& target, const RecordLayout& layout = {});
+
+/// Words of a path's record: those of a payload that a ray has no room for, then what each stage holds across traces.
+uint32_t path_words(const WaitingShaders& shaders);
+
+/// A contribution that waits to leave.
+struct Stored {
+  int lanes = 0;                 ///< a predicate
+  std::array<Scalar, 4> values;  ///< registers: pixel and colour
+};
+
+/// Of the paths that a kernel goes on with.
+struct Path {
+  const WaitingShaders& shaders;
+  bool comes_back = false;  ///< lanes come with a ray that has been traced
+  Scalar site;              ///< a register: the trace behind which a lane goes on; 0: none
+  int sends = 0;            ///< predicate: a ray leaves at the end
+  /// Contributions that leave at the end: a lane runs one shader of each stage.
+  std::map<spv::ExecutionModel, std::vector<Stored>> stored;
+  Scalar record;  ///< a register: where the path's record lies behind Resources::saved, bytes
+  /// Predicate: the hit does not count, and the ray goes on behind it. None: all hits count.
+  std::optional<int> ignored;
+};
+
+/// A kernel that is being recorded, of one shader or several.
+struct Recording {
+  Recording(RayKernel kernel, const KernelTarget& target, const RecordLayout& layout)
+      : recorder(std::string(kRayKernelNames[kernel]), target.fma), k(recorder, target.culling, layout) {}
+
+  kernel::Recorder recorder;
+  kernel::RecordedKernel k;
+  std::optional<Scalar> pixel, flags;  ///< words of the ray that has come
+  std::optional<int> saved;            ///< register: where the thread's own memory lies, bytes
+  std::optional<Path> path;            ///< of a kernel of shaders that wait
+};
 
 /// How rays leave a kernel, at most, of a thread.
 struct RayLimits {
@@ -36,12 +87,28 @@ struct RayLimits {
 
 class Lowering {
  public:
-  Lowering(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
-           const RecordLayout& layout);
+  /// `kernel`: which the shader becomes, or would if it did not wait.
+  Lowering(const Module& module, const Resources& resources, RayKernel kernel, Recording& recording);
   kernel::Function run();
 
+  // lowering_paths.cpp: kernels of shaders that wait. What all of them share comes first; it gives the lanes that
+  // begin.
+  Scalar begin_paths();
+  /// Rays whose hits do not count: by their flags, and by what an any-hit shader says. They go on.
+  void ignore_sides();
+  void run_any_hit(const AnyHitShader& shader);
+  void pass_on();
+  void give_back_unread();
+  Scalar called(bool met, uint32_t index);
+  /// Lanes of `starts` begin the shader, others go on behind its sites. `first_word`: of the path's record, for what
+  /// they hold.
+  void run_waiting(const Waits& waits, const Scalar& starts, uint32_t first_word);
+  kernel::Function end_paths();
+
  private:
+  void constants();
   kernel::Function finished();
+  Scalar place_pixel();
   void place_saved(const Scalar& depth, const Scalar& inside);
   using RecordedInt = kernel::RecordedKernel::Int;
   using RecordedFloat = kernel::RecordedKernel::Float;
@@ -52,12 +119,25 @@ class Lowering {
     std::set<uint32_t> leaves;  // labels of outer constructs to which lanes go
     bool falls = false;         // lanes arrive at the end
   };
-  static constexpr uint32_t kEnd = 0;  // of main()
+  static constexpr uint32_t kEnd = 0;               // of main()
+  static constexpr uint32_t kIgnored = UINT32_MAX;  // of an any-hit shader whose hit does not count
   Flow flow(uint32_t label, uint32_t stop);
   Flow flow_of_loop(const Block& header);
   Flow flow_of_switch(const Block& header);
+  /// A label of a switch and its values; the default's are left out.
+  struct Case {
+    uint32_t label = 0;
+    std::vector<uint32_t> literals;
+    bool is_default = false;
+  };
+  static std::set<uint32_t> falls_into(const Module& module, const Block& header, const Case& from,
+                                       const std::vector<Case>& cases);
+  static std::vector<Case> cases_of(const Module& module, const Block& header);
+  Scalar matches(const std::vector<Case>& cases, const Case& one, const Scalar& selector);
   void region(uint32_t label, uint32_t stop);
   void lines(const Block& block);
+  /// Those from `first` on, less than `end`.
+  void lines(const Block& block, size_t first, size_t end);
   void selection(const Block& block, uint32_t stop);
   /// One of which the side that is taken is known. Returns false, with nothing done, where it is like any other.
   bool known_selection(const Block& block, uint32_t taken, uint32_t stop);
@@ -79,6 +159,54 @@ class Lowering {
   void continue_at(uint32_t merge, uint32_t stop, bool masked);
   size_t predecessors(uint32_t label) const;
   void under(const Scalar& chosen, const std::function<void()>& body);
+
+  // lowering_waits.cpp: code that lanes enter behind a trace. alive_ is those of the mask that are here; others of it
+  // wait for a trace that comes later. A region ends with lanes in the predicates of the places where they go.
+  void waiting_region(uint32_t label, uint32_t stop);
+  void waiting_inner(uint32_t label, uint32_t stop);
+  void waiting_construct(const Block& block, uint32_t stop);
+  void waiting_lines(const Block& block);
+  void waiting_sides(const Block& block, uint32_t stop);
+  void waiting_side(const Scalar& chosen, uint32_t from, uint32_t to, uint32_t stop);
+  void waiting_go(uint32_t from, uint32_t to, uint32_t stop);
+  void waiting_loop(const Block& header);
+  void waiting_switch(const Block& header);
+  std::set<uint32_t> sites_from(uint32_t label, uint32_t stop) const;
+  /// Lanes that go on behind one of these sites.
+  Scalar coming(const std::set<uint32_t>& sites);
+  void wait(const Line& line);
+
+  // lowering_paths.cpp: what rays and records take along
+  void send(const Line& line, const TraceSite& site);
+  bool is_called_again(bool skips_closest_hit) const;
+  void go_on(const TraceSite& site);
+  void take_payload_back(const Line& line);
+  void flush_products();
+  void declare_held();
+  template <typename Visit>
+  void for_each_held(const TraceSite& site, const Visit& visit);
+  Scalar record_word(uint32_t number);
+  void put_record_word(uint32_t number, const Scalar& value);
+  /// Payload of a ray that has come, and what goes back to who has traced it.
+  void take_payload(uint32_t id, uint32_t type);
+  void give_payload();
+  /// Of the trace that has called: what `of` says of it.
+  template <typename Of>
+  Scalar of_site(const Of& of);
+  Scalar flags_of_trace();
+  Scalar least_distance();
+  Scalar began();
+  Value ray_origin();
+  Value ray_words(int first);
+  Scalar payload_scalar(uint32_t number);
+  void put_passed(uint32_t number, const Scalar& scalar);
+  void put_back(uint32_t number, const Scalar& scalar);
+  template <typename Put>
+  void for_each_payload(const Put& put);
+  Scalar plus(const Scalar& a, const Scalar& b);
+  Scalar goes_to(bool met, uint32_t index);
+  void declare_stored(const Module& shader);
+  void store_later(const Value& place, const Value& colour);
 
   // lowering_values.cpp: scalars
   Value get(uint32_t id);
@@ -151,6 +279,7 @@ class Lowering {
   void begin_variables();
   void keep(uint32_t id, uint32_t type, const Value& first);
   void access(const Line& line);
+  void set_address(const Line& line, const Scalar& address);
   void load(const Line& line);
   void store(const Line& line);
   Value load_from(const Pointer& pointer);
@@ -179,6 +308,7 @@ class Lowering {
   Value hit_attribute(uint32_t type);
   void load_payload(uint32_t id, const Variable& variable);
   void trace(const Line& line);
+  void check_flags(const Scalar& flags) const;
   void write_picture(const Line& line);
   void put_word(int number, const Scalar& value);
   void put_payload(uint32_t id, bool shadow);
@@ -190,8 +320,11 @@ class Lowering {
   const Module& module_;
   const Resources& resources_;
   RayKernel kernel_;
-  kernel::Recorder recorder_;
-  kernel::RecordedKernel k_;
+  kernel::Recorder& recorder_;
+  kernel::RecordedKernel& k_;
+  std::optional<Scalar>&pixel_, &flags_;  // words of the ray that has come
+  std::optional<int>& saved_;
+  std::optional<Path>& path_;
   kernel::Location where_;
 
   std::unordered_map<uint32_t, Value> values_;
@@ -209,10 +342,8 @@ class Lowering {
   std::vector<uint32_t> open_;     // labels that lanes may go to early
   uint32_t current_ = 0;           // block whose lines are recorded, or were last
   int loops_ = 0;
-  std::set<uint32_t> written_;           // variables
-  std::optional<int> saved_;             // register: where the thread's own memory lies, bytes
-  std::optional<Scalar> pixel_, flags_;  // words of the ray that has come
-  bool tag_came_ = false;                // with it
+  std::set<uint32_t> written_;  // variables
+  bool tag_came_ = false;       // with it
   /// What holds of the lanes of the mask at one place.
   struct Way {
     std::set<uint32_t> given_away;  // payloads that a ray has taken with it
@@ -222,6 +353,12 @@ class Lowering {
   /// That of lanes from both.
   static Way joined(const std::optional<Way>& a, const Way& b);
   Way way_;
+  const Waits* waits_ = nullptr;  // of a shader that waits
+  Scalar alive_;
+  size_t stores_ = 0;             // imageStores so far
+  uint32_t first_word_ = 0;       // of the path's record, for what is held
+  std::optional<Scalar> return_;  // register: the site that called the shader
+  Value passed_;                  // registers: what has come as a payload, of a shader that has none
 };
 
 }  // namespace raypool::shader

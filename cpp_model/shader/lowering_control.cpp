@@ -5,27 +5,6 @@
 
 namespace raypool::shader {
 
-namespace {
-
-std::vector<uint32_t> successors(const Block& block) {
-  const std::vector<uint32_t>& operands = block.end.operands;
-  switch (block.end.op) {
-    case spv::Op::OpBranch:
-      return {operands.at(0)};
-    case spv::Op::OpBranchConditional:
-      return {operands.at(1), operands.at(2)};
-    case spv::Op::OpSwitch: {
-      std::vector<uint32_t> labels;
-      for (size_t i = 1; i < operands.size(); i += 2) labels.push_back(operands[i]);
-      return labels;
-    }
-    default:
-      return {};
-  }
-}
-
-}  // namespace
-
 bool Lowering::is_open(uint32_t label) const { return std::find(open_.begin(), open_.end(), label) != open_.end(); }
 
 size_t Lowering::predecessors(uint32_t label) const {
@@ -37,18 +16,9 @@ size_t Lowering::predecessors(uint32_t label) const {
   return count;
 }
 
-namespace {
-
-/// A label of a switch and its values; the default's are left out.
-struct Case {
-  uint32_t label = 0;
-  std::vector<uint32_t> literals;
-  bool is_default = false;
-};
-
 /// The cases that lanes of a case fall into, at most.
-std::set<uint32_t> falls_into(const Module& module, const Block& header, const Case& from,
-                              const std::vector<Case>& cases) {
+std::set<uint32_t> Lowering::falls_into(const Module& module, const Block& header, const Case& from,
+                                        const std::vector<Case>& cases) {
   const auto is_case = [&](uint32_t label) {
     return std::any_of(cases.begin(), cases.end(), [&](const Case& one) { return one.label == label; });
   };
@@ -72,7 +42,7 @@ std::set<uint32_t> falls_into(const Module& module, const Block& header, const C
 }
 
 /// In the order of their blocks, but each behind those that fall into it.
-std::vector<Case> cases_of(const Module& module, const Block& header) {
+std::vector<Lowering::Case> Lowering::cases_of(const Module& module, const Block& header) {
   std::vector<Case> cases;
   const auto entry = [&](uint32_t label) -> Case& {
     for (Case& known : cases)
@@ -104,6 +74,19 @@ std::vector<Case> cases_of(const Module& module, const Block& header) {
   }
   return ordered;
 }
+
+/// Lanes of a case.
+Scalar Lowering::matches(const std::vector<Case>& cases, const Case& one, const Scalar& selector) {
+  Scalar any = Scalar::constant(0);
+  for (const Case& other : cases) {
+    if (one.is_default ? other.is_default : other.label != one.label) continue;
+    for (const uint32_t literal : other.literals)
+      any = either(any, compare(Opcode::Ieq, selector, Scalar::constant(literal)));
+  }
+  return one.is_default ? inverse(any) : any;
+}
+
+namespace {
 
 template <typename Set>
 void add(Set& to, const Set& from) {
@@ -240,11 +223,17 @@ Lowering::Way Lowering::joined(const std::optional<Way>& a, const Way& b) {
   return both;
 }
 
-void Lowering::lines(const Block& block) {
+void Lowering::lines(const Block& block) { lines(block, 0, block.lines.size()); }
+
+void Lowering::lines(const Block& block, size_t first, size_t end) {
   current_ = block.label;
-  for (const Line& phi : block.phis)
-    if (kept_.count(phi.id) != 0) set(phi, get(phi.id));
-  for (const Line& line : block.lines) {
+  if (first == 0)
+    for (const Line& phi : block.phis)
+      if (kept_.count(phi.id) != 0) set(phi, get(phi.id));
+  for (size_t i = first; i < end; ++i) {
+    const Line& line = block.lines[i];
+    // What all lanes have computed already stays: those that come back behind a trace would not have it from here.
+    if (waits_ != nullptr && waits_->is_steady(line)) continue;
     where_ = line.where;
     recorder_.set_place(where_);
     operation(line);
@@ -270,7 +259,7 @@ Value Lowering::incoming(const Line& phi, uint32_t from) {
 }
 
 void Lowering::edge(uint32_t from, uint32_t to) {
-  if (to != kEnd) {
+  if (to != kEnd && to != kIgnored) {
     const Block& target = module_.block(to);
     // All are read before one is written.
     std::vector<std::pair<Scalar*, Scalar>> moves;
@@ -340,11 +329,14 @@ void Lowering::region(uint32_t label, uint32_t stop) {
         switch_over(block, stop);
         return;
       case spv::Op::OpReturn:
+      case spv::Op::OpTerminateRayKHR:
+        edge(label, kEnd);
+        return;
       case spv::Op::OpUnreachable:
         return;
       case spv::Op::OpIgnoreIntersectionKHR:
-      case spv::Op::OpTerminateRayKHR:
-        fail("any-hit shaders are not supported: decide in the closest-hit shader, and trace on from behind the hit");
+        edge(label, kIgnored);
+        return;
       default:
         fail("main() ends with a value: it must return void");
     }
@@ -590,20 +582,8 @@ void Lowering::switch_over(const Block& header, uint32_t stop) {
   }
   const Way before = way_;
   Way after = way_;
-  const auto matches = [&](const Case& one) {
-    Scalar any = Scalar::constant(0);
-    for (const uint32_t literal : one.literals)
-      any = either(any, compare(Opcode::Ieq, selector, Scalar::constant(literal)));
-    return any;
-  };
-  const auto default_matches = [&] {
-    Scalar any = Scalar::constant(0);
-    for (const Case& one : cases)
-      if (!one.is_default) any = either(any, matches(one));
-    return inverse(any);
-  };
   for (const Case& one : cases) {
-    const Scalar chosen = one.is_default ? default_matches() : matches(one);
+    const Scalar chosen = matches(cases, one, selector);
     if (one.label == merge) {
       if (reach_.count(merge) != 0 || has_phis(merge)) under(chosen, [&] { edge(header.label, merge); });
       continue;

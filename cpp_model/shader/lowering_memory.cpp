@@ -206,6 +206,15 @@ void Lowering::access(const Line& line) {
   pointers_[line.id] = pointer;
 }
 
+/// The line's pointer leads to this byte of memory.
+void Lowering::set_address(const Line& line, const Scalar& address) {
+  Pointer pointer;
+  pointer.to = Pointer::To::Memory;
+  pointer.type = module_.type(line.type).element;
+  pointer.base = kept(line.id, 0, address);
+  pointers_[line.id] = pointer;
+}
+
 void Lowering::load(const Line& line) {
   const Pointer pointer = pointer_of(line.operands.at(0));
   if (pointer.to == Pointer::To::Tree) return;
@@ -222,19 +231,16 @@ void Lowering::load(const Line& line) {
   }
   if (module_.type(line.type).kind == TypeKind::Pointer) {
     // A buffer's address, kept in a block or a buffer: 64 bits there, of which the machine uses the low word.
-    Pointer target;
-    target.to = Pointer::To::Memory;
-    target.type = module_.type(line.type).element;
+    Scalar low;
     if (pointer.to == Pointer::To::Memory) {
       const auto [base, offset] = address(pointer);
-      target.base = Scalar::in_register(k_.load_int(as_int(base), static_cast<int>(offset)).number());
+      low = of(k_.load_int(as_int(base), static_cast<int>(offset)));
     } else if (pointer.to == Pointer::To::Words && pointer.dynamic.empty()) {
-      target.base = word_scalar(pointer.words->at(pointer.offset / 4));
+      low = word_scalar(pointer.words->at(pointer.offset / 4));
     } else {
       fail("an address that is kept in a variable is not supported: keep its uvec2");
     }
-    target.base = kept(line.id, 0, *target.base);
-    pointers_[line.id] = target;
+    set_address(line, low);
     return;
   }
   set(line, load_from(pointer));

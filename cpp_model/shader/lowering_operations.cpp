@@ -330,23 +330,14 @@ bool Lowering::conversion(const Line& line) {
       fail("floats of other than 32 bits are not supported: use float");
     case spv::Op::OpBitcast:
       if (module_.type(line.type).kind == TypeKind::Pointer) {
-        // An address: its low word, as the memory has 32-bit addresses.
-        Pointer pointer;
-        pointer.to = Pointer::To::Memory;
-        pointer.type = module_.type(line.type).element;
-        pointer.base = get(line.operands.at(0)).at(0);
-        pointers_[line.id] = pointer;
+        // Its low word, as the memory has 32-bit addresses.
+        set_address(line, get_scalar(line.operands.at(0)));
         return true;
       }
       return each([&](const Scalar& a) { return narrowed_result(line, a); });
-    case spv::Op::OpConvertUToPtr: {
-      Pointer pointer;
-      pointer.to = Pointer::To::Memory;
-      pointer.type = module_.type(line.type).element;
-      pointer.base = get_scalar(line.operands.at(0));
-      pointers_[line.id] = pointer;
+    case spv::Op::OpConvertUToPtr:
+      set_address(line, get_scalar(line.operands.at(0)));
       return true;
-    }
     case spv::Op::OpCopyObject:
     case spv::Op::OpCopyLogical:
       if (pointers_.count(line.operands.at(0)) != 0)

@@ -12,8 +12,6 @@ constexpr uint32_t kTagShift = 8, kTagMask = 0xffff;
 constexpr int kPayloadWords = 3;
 constexpr int kSlots = 64;  // a kernel that spills more is better divided
 
-constexpr uint32_t kOpaque = 1, kCullNoOpaque = 128;  // all triangles are opaque
-
 std::string stage_name(RayKernel kernel) {
   switch (kernel) {
     case RayKernel::CastEye:
@@ -29,21 +27,25 @@ std::string stage_name(RayKernel kernel) {
 
 kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
                        const RecordLayout& layout) {
-  return Lowering(module, resources, kernel, target, layout).run();
+  Recording recording(kernel, target, layout);
+  return Lowering(module, resources, kernel, recording).run();
 }
 
-Lowering::Lowering(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
-                   const RecordLayout& layout)
+Lowering::Lowering(const Module& module, const Resources& resources, RayKernel kernel, Recording& recording)
     : module_(module),
       resources_(resources),
       kernel_(kernel),
-      recorder_(std::string(kRayKernelNames[kernel]), target.fma),
-      k_(recorder_, target.culling, layout),
+      recorder_(recording.recorder),
+      k_(recording.k),
+      pixel_(recording.pixel),
+      flags_(recording.flags),
+      saved_(recording.saved),
+      path_(recording.path),
       where_{lasting(module.name()), 1} {
   recorder_.set_place(where_);
 }
 
-kernel::Function Lowering::run() {
+void Lowering::constants() {
   for (const Line& line : module_.constants()) {
     where_ = line.where;
     const auto bits = module_.constant(line.id);
@@ -62,10 +64,14 @@ kernel::Function Lowering::run() {
       set(line, value);
     }
   }
-  const uint32_t entry = module_.blocks().front().label;
   // Messages name no line before that of an instruction.
   where_ = {lasting(module_.name()), 0};
   recorder_.set_place({where_.file, 1});
+}
+
+kernel::Function Lowering::run() {
+  constants();
+  const uint32_t entry = module_.blocks().front().label;
   if (kernel_ != RayKernel::CastEye) {
     k_.ray_in();
     pixel_ = of(k_.int_word(word::kPixel));
@@ -75,6 +81,17 @@ kernel::Function Lowering::run() {
     region(entry, kEnd);
     return finished();
   }
+  const Scalar inside = place_pixel();
+  place_saved(Scalar::constant(0), inside);
+  under(inside, [&] {
+    begin_variables();
+    region(entry, kEnd);
+  });
+  return finished();
+}
+
+/// The pixel of an eye ray's thread, and whether it is in the picture.
+Scalar Lowering::place_pixel() {
   // Thread and block both become x | y << 16: their sum is the pixel.
   const Scalar thread = of(k_.thread());
   const Scalar x = binary(Opcode::And, thread, of(k_.int_argument(argument::kTileMask)));
@@ -85,19 +102,13 @@ kernel::Function Lowering::run() {
       compare(Opcode::Ult, immediate(Opcode::And, *pixel_, 0xffff), Scalar::constant(resources_.width));
   const Scalar in_picture =
       compare(Opcode::Ult, immediate(Opcode::Shr, *pixel_, 16), Scalar::constant(resources_.height));
-  const Scalar inside = both(in_row, in_picture);
-  place_saved(Scalar::constant(0), inside);
-  under(inside, [&] {
-    begin_variables();
-    region(entry, kEnd);
-  });
-  return finished();
+  return both(in_row, in_picture);
 }
 
 /// Where the thread's own memory lies. Miss shaders have none: two rays of a pixel may come to them at once.
 void Lowering::place_saved(const Scalar& depth, const Scalar& inside) {
   constexpr uint64_t kMost = uint64_t{1} << 30;
-  if (resources_.saved == 0 || resources_.saved_stride() * kSlots > UINT32_MAX - uint64_t{resources_.saved} ||
+  if (resources_.saved == 0 || resources_.saved_stride() * kSlots > UINT32_MAX - uint64_t{resources_.spilled()} ||
       resources_.saved_stride() > kMost) {
     return;
   }
@@ -111,16 +122,12 @@ kernel::Function Lowering::finished() {
   kernel::Function function = recorder_.finish();
   function.reuses_values = true;
   if (saved_)
-    function.spill_memory = {*saved_, resources_.saved, static_cast<uint32_t>(resources_.saved_stride()), kSlots};
+    function.spill_memory = {*saved_, resources_.spilled(), static_cast<uint32_t>(resources_.saved_stride()), kSlots};
   return function;
 }
 
 Value Lowering::built_in(uint32_t number, uint32_t type) {
-  const auto words = [&](int first, int count) {
-    Value value;
-    for (int i = 0; i < count; ++i) value.push_back(of(k_.int_word(first + i)));
-    return value;
-  };
+  const auto word_of_ray = [&](int which) { return Value{of(k_.int_word(which))}; };
   const auto only = [&](bool fits, const char* name) {
     if (!fits) fail(fmt::format("{} has no value in a {} shader", name, stage_name(kernel_)));
   };
@@ -138,19 +145,21 @@ Value Lowering::built_in(uint32_t number, uint32_t type) {
     case spv::BuiltIn::WorldRayOriginKHR:
     case spv::BuiltIn::ObjectRayOriginKHR:
       only(has_ray, "gl_WorldRayOriginEXT");
-      return words(word::kOrigin, 3);
+      return ray_origin();
     case spv::BuiltIn::WorldRayDirectionKHR:
     case spv::BuiltIn::ObjectRayDirectionKHR:
       only(has_ray, "gl_WorldRayDirectionEXT");
-      return words(word::kDirection, 3);
+      return ray_words(word::kDirection);
     case spv::BuiltIn::RayTminKHR:
-      return {Scalar::constant(0)};
-    case spv::BuiltIn::RayTmaxKHR:
+      return {path_ ? least_distance() : Scalar::constant(0)};
+    case spv::BuiltIn::RayTmaxKHR: {
       only(has_ray, "gl_RayTmaxEXT");
-      return words(has_hit ? word::kDistance : word::kLimit, 1);
+      const Value behind = word_of_ray(has_hit ? word::kDistance : word::kLimit);
+      return path_ ? Value{plus(behind[0], began())} : behind;
+    }
     case spv::BuiltIn::PrimitiveId:
       only(has_hit, "gl_PrimitiveID");
-      return words(word::kTriangle, 1);
+      return word_of_ray(word::kTriangle);
     case spv::BuiltIn::InstanceId:
     case spv::BuiltIn::InstanceCustomIndexKHR:
     case spv::BuiltIn::RayGeometryIndexKHR:
@@ -158,11 +167,11 @@ Value Lowering::built_in(uint32_t number, uint32_t type) {
     case spv::BuiltIn::HitKindKHR: {
       only(has_hit, "gl_HitKindEXT");
       const Scalar back =
-          compare(Opcode::Fgt, dot(words(word::kDirection, 3), words(word::kNormal, 3)), Scalar::constant(0));
+          compare(Opcode::Fgt, dot(ray_words(word::kDirection), ray_words(word::kNormal)), Scalar::constant(0));
       return {select(back, Scalar::constant(0xff), Scalar::constant(0xfe))};
     }
     case spv::BuiltIn::IncomingRayFlagsKHR:
-      return {Scalar::constant(kernel_ == RayKernel::Shade ? kShadowRay : 0)};
+      return {path_ ? flags_of_trace() : Scalar::constant(kernel_ == RayKernel::Shade ? kShadowRay : 0)};
     case spv::BuiltIn::ObjectToWorldKHR:
     case spv::BuiltIn::WorldToObjectKHR: {
       const uint32_t columns = module_.type(type).count, rows = module_.scalars(type) / columns;
@@ -239,6 +248,7 @@ std::vector<std::pair<int, bool>> Lowering::payload_words(uint32_t type) const {
 
 void Lowering::load_payload(uint32_t id, const Variable& variable) {
   const uint32_t type = module_.type(variable.type).element;
+  if (path_) return take_payload(id, type);
   Value value;
   for (const auto& [number, is_tag] : payload_words(type)) {
     if (!is_tag) {
@@ -263,18 +273,22 @@ void Lowering::put_word(int number, const Scalar& value) {
   if (!value.is_undefined()) k_.set_word(number, as_int(value));
 }
 
+void Lowering::check_flags(const Scalar& flags) const {
+  if (!flags.is_constant()) fail("the ray flags are computed: give traceRayEXT constant flags");
+  constexpr uint32_t kKnown = kShadowRay | ray_flag::kOpaque | ray_flag::kNoOpaque | ray_flag::kCullsBack |
+                              ray_flag::kCullsFront | ray_flag::kCullsNoOpaque;
+  if ((flags.bits & ~kKnown) == 0) return;
+  if ((flags.bits & ray_flag::kCullsOpaque) != 0)
+    fail("gl_RayFlagsCullOpaqueEXT is not supported: decide in an any-hit shader");
+  fail(fmt::format("ray flags {:#x} are not those of a ray: use gl_RayFlags...EXT", flags.bits));
+}
+
 void Lowering::trace(const Line& line) {
   if (kernel_ == RayKernel::Shade) fail("a miss shader traces a ray: trace it in the closest-hit shader");
   if (loops_ > 0)
     fail("traceRayEXT is called in a loop: a thread casts one ray on and one shadow ray, outside of loops");
   const Scalar flags = get_scalar(line.operands.at(1));
-  if (!flags.is_constant()) fail("the ray flags are computed: give traceRayEXT constant flags");
-  if ((flags.bits & ~(kShadowRay | kOpaque | kCullNoOpaque)) != 0) {
-    fail(
-        fmt::format("ray flags {:#x}: of them only gl_RayFlagsOpaqueEXT, and gl_RayFlagsTerminateOnFirstHitEXT with "
-                    "gl_RayFlagsSkipClosestHitShaderEXT are supported",
-                    flags.bits));
-  }
+  check_flags(flags);
   const bool shadow = (flags.bits & kShadowRay) == kShadowRay;
   if (!shadow && (flags.bits & kShadowRay) != 0) {
     fail(
@@ -344,6 +358,7 @@ void Lowering::write_picture(const Line& line) {
   if (image == images_.end() || !image->second.second) fail("imageStore writes to the picture alone");
   if (loops_ > 0) fail("imageStore is called in a loop: add up first, and store behind the loop");
   const Value place = get(line.operands.at(1)), colour = get(line.operands.at(2));
+  if (path_) return store_later(place, colour);
   const auto out = [&](const Scalar& pixel) {
     put_word(word::kPixel, pixel);
     for (int i = 0; i < 3; ++i) put_word(word::kColor + i, colour.at(static_cast<size_t>(i)));

@@ -14,7 +14,7 @@ Value Lowering::get(uint32_t id) {
     const Product waiting = product->second;
     products_.erase(product);
     Value value(waiting.a.size());
-    for (size_t i = 0; i < value.size(); ++i) value[i] = binary(Opcode::Fmul, waiting.a[i], waiting.b[i]);
+    for (size_t i = 0; i < value.size(); ++i) value[i] = kept(id, i, binary(Opcode::Fmul, waiting.a[i], waiting.b[i]));
     values_[id] = value;
   }
   const auto found = values_.find(id);
@@ -30,7 +30,10 @@ void Lowering::set(const Line& line, Value value) {
 /// A scalar of a value, in its variable if it has one.
 Scalar Lowering::kept(uint32_t id, size_t number, const Scalar& scalar) {
   const auto variables = kept_.find(id);
-  if (variables == kept_.end() || scalar.is_constant() || scalar.is_undefined()) return scalar;
+  if (variables == kept_.end()) return scalar;
+  // What is held across a trace comes from the path's record, whatever it was.
+  const bool is_held = waits_ != nullptr && waits_->values.count(id) != 0 && module_.scalars(type_of(id)) != 0;
+  if (!is_held && (scalar.is_constant() || scalar.is_undefined())) return scalar;
   assign(variables->second.at(number), scalar);
   return variables->second.at(number);
 }

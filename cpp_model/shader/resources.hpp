@@ -56,6 +56,15 @@ struct Resources {
   /// reads.
   uint32_t saved = 0;
   uint64_t saved_pixels() const { return uint64_t{4} * width * height * (depth + 1); }
+  /// Of sets that wait for their rays: words that a path's record takes. Records lie at saved + path_bytes()
+  /// (y path_pitch() + x); the values above come behind them.
+  uint32_t path_words = 0;
+  uint64_t path_bytes() const { return (uint64_t{4} * path_words + 63) / 64 * 64; }
+  /// An odd number of eights, so that rows of a tile lie in different sets of the cache.
+  uint64_t path_pitch() const { return 8 * ((uint64_t{width} + 7) / 8 | 1); }
+  uint64_t paths_bytes() const { return path_bytes() * path_pitch() * height; }
+  /// Where value 0 lies: saved, but for records of paths.
+  uint32_t spilled() const { return static_cast<uint32_t>(saved + paths_bytes()); }
   /// Whole lines, so that a warp's values lie in as few as can be.
   uint64_t saved_stride() const { return (saved_pixels() + 127) / 64 * 64; }
 };

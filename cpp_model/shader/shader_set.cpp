@@ -8,11 +8,13 @@
 #include <map>
 #include <optional>
 
+#include "bits.hpp"
 #include "config/data_folder.hpp"
 #include "isa/input_error.hpp"
 #include "shader/glsl.hpp"
 #include "shader/lowering.hpp"
 #include "shader/module.hpp"
+#include "shader/waits.hpp"
 
 namespace raypool::shader {
 namespace {
@@ -24,11 +26,18 @@ struct Stage {
   spv::ExecutionModel model;
   const char* name;
 };
-constexpr std::array<Stage, 3> kStages = {{
+constexpr std::array<Stage, 4> kStages = {{
     {".rgen", spv::ExecutionModel::RayGenerationKHR, "ray generation"},
     {".rchit", spv::ExecutionModel::ClosestHitKHR, "closest-hit"},
     {".rmiss", spv::ExecutionModel::MissKHR, "miss"},
+    {".rahit", spv::ExecutionModel::AnyHitKHR, "any-hit"},
 }};
+
+// A ray that is waited for has 3 bits for the number of a shader, and 8 for that of its trace.
+constexpr size_t kMostOfStage = 8;
+constexpr uint32_t kMostSites = 255;
+
+constexpr size_t kRayGeneration = 0, kClosestHit = 1, kMiss = 2, kAnyHit = 3;
 
 /// The ending that names the stage: of "a.rgen" and "a.rgen.spv" and "a.rgen.glsl".
 std::string stage_ending(const fs::path& file) {
@@ -36,35 +45,34 @@ std::string stage_ending(const fs::path& file) {
   return ending == ".spv" || ending == ".glsl" ? file.stem().extension().string() : ending;
 }
 
-/// Files of the folder, of each stage at most one.
-std::array<fs::path, kStages.size()> find_files(const fs::path& folder) {
-  std::array<fs::path, kStages.size()> files;
+/// Files of the folder, of each stage in the order of their names.
+std::array<std::vector<fs::path>, kStages.size()> find_files(const fs::path& folder) {
+  std::array<std::vector<fs::path>, kStages.size()> files;
   std::error_code error;
   fs::directory_iterator entries(folder, error);
   if (error) throw InputError(fmt::format("shaders {}: {}", folder.string(), error.message()));
   for (const fs::directory_entry& entry : entries) {
     const std::string ending = stage_ending(entry.path());
     for (const auto& [other, instead] :
-         {std::pair(".rahit", "decide in the closest-hit shader, and trace on from behind the hit"),
-          std::pair(".rint", "give the scene triangles"), std::pair(".rcall", "write a function")}) {
+         {std::pair(".rint", "give the scene triangles"), std::pair(".rcall", "write a function")}) {
       if (ending == other)
         throw InputError(
             fmt::format("{}: shaders of this stage are not supported: {}", entry.path().string(), instead));
     }
-    for (size_t i = 0; i < kStages.size(); ++i) {
-      if (ending != kStages[i].ending) continue;
-      if (!files[i].empty()) {
-        throw InputError(fmt::format("{}: the folder has a second {} shader, {}: keep one", files[i].string(),
-                                     kStages[i].name, entry.path().filename().string()));
-      }
-      files[i] = entry.path();
+    for (size_t i = 0; i < kStages.size(); ++i)
+      if (ending == kStages[i].ending) files[i].push_back(entry.path());
+  }
+  for (size_t i = 0; i < kStages.size(); ++i) {
+    std::sort(files[i].begin(), files[i].end());
+    if (files[i].empty() && i < kMiss) {
+      throw InputError(fmt::format("shaders {}: there is no {} shader: add a file with the ending {}", folder.string(),
+                                   kStages[i].name, kStages[i].ending));
     }
   }
-  for (const size_t needed : {size_t{0}, size_t{1}}) {
-    if (files[needed].empty()) {
-      throw InputError(fmt::format("shaders {}: there is no {} shader: add a file with the ending {}", folder.string(),
-                                   kStages[needed].name, kStages[needed].ending));
-    }
+  if (files[kRayGeneration].size() > 1) {
+    throw InputError(fmt::format("{}: the folder has a second {} shader, {}: keep one",
+                                 files[kRayGeneration][0].string(), kStages[kRayGeneration].name,
+                                 files[kRayGeneration][1].filename().string()));
   }
   return files;
 }
@@ -114,49 +122,135 @@ uint32_t end_of(const std::vector<Member>& members) {
   return end;
 }
 
+/// A shader as SPIR-V.
+struct File {
+  std::string name;
+  std::vector<uint32_t> words;
+};
+
 class Folder : public ShaderSet {
  public:
   explicit Folder(const fs::path& folder) : folder_(folder.string()) {
     const auto files = find_files(folder);
     for (size_t i = 0; i < kStages.size(); ++i) {
-      if (files[i].empty()) continue;
-      names_[i] = files[i].string();
-      words_[i] = spirv_of(names_[i]);
-      const Module module(words_[i], names_[i]);
-      if (module.stage() != kStages[i].model)
-        throw InputError(fmt::format("{}: it is no {} shader, as its ending says", names_[i], kStages[i].name));
-      reflect(module);
+      for (const fs::path& path : files[i]) {
+        files_[i].push_back({path.string(), spirv_of(path.string())});
+        const Module module(files_[i].back().words, files_[i].back().name);
+        if (module.stage() != kStages[i].model)
+          throw InputError(fmt::format("{}: it is no {} shader, as its ending says", module.name(), kStages[i].name));
+        reflect(module);
+        waits_ |= i == kAnyHit || files_[i].size() > 1 || find_waits(module).needed;
+      }
     }
   }
 
   const std::string& folder() const override { return folder_; }
   const std::vector<Binding>& bindings() const override { return bindings_; }
   const std::vector<Member>& push_constants() const override { return push_constants_; }
+  bool waits() const override { return waits_; }
+  uint32_t path_words(const std::map<uint32_t, uint32_t>& specialization) const override {
+    return waits_ ? shader::path_words(Modules(files_, specialization).waiting()) : 0;
+  }
 
   EnumArray<RayKernel, kernel::Function, kRayKernels> record(const Resources& resources, const KernelTarget& target,
                                                              const RecordLayout& layout) const override {
-    std::array<std::optional<Module>, kStages.size()> modules;
-    for (size_t i = 0; i < kStages.size(); ++i)
-      if (!words_[i].empty()) modules[i].emplace(words_[i], names_[i], resources.specialization);
+    const Modules modules(files_, resources.specialization);
     EnumArray<RayKernel, kernel::Function, kRayKernels> functions;
-    functions[RayKernel::CastEye] = lower(*modules[0], resources, RayKernel::CastEye, target, layout);
-    if (!modules[2] && casts_shadow_rays(*modules[1])) {
+    const auto nothing = [&](RayKernel kernel) {
+      functions[kernel] = kernel::record_kernel(
+          std::string(kRayKernelNames[kernel]), [](auto& k) { k.ray_in(); }, target, layout);
+    };
+    if (waits_) {
+      const WaitingShaders shaders = modules.waiting();
+      for (const RayKernel kernel : {RayKernel::CastEye, RayKernel::CastSecondary})
+        functions[kernel] = lower_waiting(shaders, resources, kernel, target, layout);
+      nothing(RayKernel::CastSecondaryDirect);
+      nothing(RayKernel::Shade);
+      return functions;
+    }
+    const Module& closest_hit = modules.of(kClosestHit);
+    if (files_[kMiss].empty() && casts_shadow_rays(closest_hit)) {
       throw InputError(
           fmt::format("{}: it traces shadow rays, and no miss shader takes those that meet nothing: add a "
                       "file with the ending .rmiss",
-                      names_[1]));
+                      closest_hit.name()));
     }
-    functions[RayKernel::CastSecondary] = lower(*modules[1], resources, RayKernel::CastSecondary, target, layout);
-    functions[RayKernel::CastSecondaryDirect] =
-        lower(*modules[1], resources, RayKernel::CastSecondaryDirect, target, layout);
-    functions[RayKernel::Shade] =
-        modules[2] ? lower(*modules[2], resources, RayKernel::Shade, target, layout)
-                   : kernel::record_kernel(
-                         std::string(kRayKernelNames[RayKernel::Shade]), [](auto& k) { k.ray_in(); }, target, layout);
+    const auto become = [&](RayKernel kernel, const Module& module) {
+      functions[kernel] = lower(module, resources, kernel, target, layout);
+    };
+    become(RayKernel::CastEye, modules.of(kRayGeneration));
+    become(RayKernel::CastSecondary, closest_hit);
+    become(RayKernel::CastSecondaryDirect, closest_hit);
+    if (files_[kMiss].empty())
+      nothing(RayKernel::Shade);
+    else
+      become(RayKernel::Shade, modules.of(kMiss));
     return functions;
   }
 
  private:
+  using Files = std::array<std::vector<File>, kStages.size()>;
+
+  /// The shaders with values of their specialization constants, and where they wait.
+  class Modules {
+   public:
+    Modules(const Files& files, const std::map<uint32_t, uint32_t>& specialization) {
+      uint32_t first = 1;
+      for (size_t i = 0; i < kStages.size(); ++i) {
+        if (files[i].size() > kMostOfStage) {
+          throw InputError(fmt::format("{}: it is the {}th {} shader of its set, which may have {}: merge some",
+                                       files[i][kMostOfStage].name, kMostOfStage + 1, kStages[i].name, kMostOfStage));
+        }
+        for (const File& file : files[i]) {
+          modules_[i].push_back(std::make_unique<Module>(file.words, file.name, specialization));
+          waits_[i].push_back(find_waits(*modules_[i].back(), first));
+          first += size32(waits_[i].back().sites);
+          if (first > kMostSites + 1) {
+            throw InputError(
+                fmt::format("{}: with its calls of traceRayEXT the set has {}, and may have {}: put some "
+                            "into loops",
+                            file.name, first - 1, kMostSites));
+          }
+        }
+      }
+    }
+    const Module& of(size_t stage) const { return *modules_[stage].at(0); }
+    WaitingShaders waiting() const {
+      const auto all = [&](size_t stage) {
+        std::vector<WaitingShader> shaders;
+        for (size_t i = 0; i < modules_[stage].size(); ++i) shaders.push_back({*modules_[stage][i], waits_[stage][i]});
+        return shaders;
+      };
+      return {all(kRayGeneration).at(0), all(kMiss), all(kClosestHit), any_hits()};
+    }
+
+   private:
+    /// One alone is asked of all hits, others of those of the closest-hit shader of their name.
+    std::vector<AnyHitShader> any_hits() const {
+      const auto name_of = [](const Module& module) {
+        const std::string name = fs::path(module.name()).filename().string();
+        return name.substr(0, name.find(stage_ending(name)));
+      };
+      std::vector<AnyHitShader> shaders;
+      for (const auto& module : modules_[kAnyHit]) {
+        AnyHitShader shader{*module, {}};
+        for (uint32_t i = 0; i < modules_[kClosestHit].size(); ++i)
+          if (modules_[kAnyHit].size() == 1 || name_of(*modules_[kClosestHit][i]) == name_of(*module))
+            shader.closest_hits.push_back(i);
+        if (shader.closest_hits.empty()) {
+          throw InputError(
+              fmt::format("{}: no closest-hit shader has its name, so it belongs to no hits: name it as one of them",
+                          module->name()));
+        }
+        shaders.push_back(std::move(shader));
+      }
+      return shaders;
+    }
+
+    std::array<std::vector<std::unique_ptr<Module>>, kStages.size()> modules_;
+    std::array<std::vector<Waits>, kStages.size()> waits_;
+  };
+
   void check_picture(const Module& module, uint32_t type, const Binding& binding) const {
     if (!module.type(type).is_2d || module.type(module.type(type).element).kind != TypeKind::Float) {
       throw InputError(
@@ -174,11 +268,9 @@ class Folder : public ShaderSet {
   }
 
   static bool casts_shadow_rays(const Module& module) {
-    for (const Block& block : module.blocks())
-      for (const Line& line : block.lines)
-        if (line.op == spv::Op::OpTraceRayKHR && (module.constant(line.operands.at(1)).value_or(0) & kShadowRay) != 0)
-          return true;
-    return false;
+    const Waits waits = find_waits(module);
+    return std::any_of(waits.sites.begin(), waits.sites.end(),
+                       [&](const TraceSite& site) { return is_shadow(module, *site.line); });
   }
 
   void reflect(const Module& module) {
@@ -224,8 +316,8 @@ class Folder : public ShaderSet {
   }
 
   std::string folder_;
-  std::array<std::string, kStages.size()> names_;
-  std::array<std::vector<uint32_t>, kStages.size()> words_;
+  Files files_;
+  bool waits_ = false;
   std::vector<Binding> bindings_;
   std::vector<Member> push_constants_;
 };

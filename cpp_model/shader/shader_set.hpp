@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,8 +42,8 @@ struct Binding {
 /// Throws InputError, with file and line where they are known, for what cannot be done.
 class ShaderSet {
  public:
-  /// A folder, or the name of one in shaders/, with one .rgen, one .rchit and at most one .rmiss file, each in GLSL or
-  /// as SPIR-V (.rgen.spv ...).
+  /// A folder, or the name of one in shaders/, with one .rgen file, .rchit and .rmiss files, each in GLSL or as SPIR-V
+  /// (.rgen.spv ...). traceRayEXT counts those of a stage in the order of their names.
   static std::shared_ptr<const ShaderSet> load(const std::string& folder);
   virtual ~ShaderSet() = default;
 
@@ -50,7 +51,13 @@ class ShaderSet {
   /// Those that a shader of the set uses, each once.
   virtual const std::vector<Binding>& bindings() const = 0;
   virtual const std::vector<Member>& push_constants() const = 0;
-  /// The ray kernels, not yet compiled. CastSecondaryDirect is the closest-hit shader without rays that go on.
+  /// Whether a shader goes on when its ray has come back: the machine must have chip.miss_records, and a frame a depth
+  /// of 2 or more, whatever the shaders' own. A set that does not wait ends with its traces.
+  virtual bool waits() const = 0;
+  /// What Resources::path_words must be.
+  virtual uint32_t path_words(const std::map<uint32_t, uint32_t>& specialization) const = 0;
+  /// The ray kernels, not yet compiled. CastSecondaryDirect is the closest-hit shader without rays that go on; of a set
+  /// that waits it is not used.
   /// `layout`: of the intersections that they import.
   virtual EnumArray<RayKernel, kernel::Function, kRayKernels> record(const Resources& resources,
                                                                      const KernelTarget& target,

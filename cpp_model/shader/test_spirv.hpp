@@ -7,9 +7,11 @@
 
 #include <spirv/unified1/GLSL.std.450.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -48,6 +50,18 @@ struct OracleContribution {
 
 class SpirvThread {
  public:
+  struct Word {
+    uint32_t bits = 0;
+    bool known = false;
+  };
+  using Words = std::vector<Word>;
+  /// A traceRayEXT that the shader waits for: the ray (its payload and flags are zero) and what it calls.
+  struct Call {
+    Ray ray{};
+    uint32_t flags = 0, miss = 0, closest_hit = 0;
+    float least = 0;  ///< how far along the shader's ray this one begins
+  };
+
   /// `arguments`, `input`: as a kernel gets them. `input` is what CastEye does not read.
   SpirvThread(const shader::Module& module, const shader::Resources& resources, RayKernel kernel,
               const std::array<uint32_t, kArguments>& arguments, Memory& memory)
@@ -61,6 +75,13 @@ class SpirvThread {
   std::vector<OracleRay> rays;
   std::vector<OracleContribution> frame;
   uint64_t most_blocks = 200000;
+  Memory& memory() { return memory_; }
+  /// Of a shader that waits for its rays: runs the shader that a ray comes to, which may change the payload.
+  std::function<void(SpirvThread&, const Call&, Words&)> call;
+  /// Of a shader that is called: the payload, before run() and behind it, and of the ray its flags and where it begins.
+  std::optional<Words> payload;
+  std::optional<uint32_t> ray_flags;
+  float least = 0;
 
   void run() {
     if (kernel_ == RayKernel::CastEye) {
@@ -74,6 +95,7 @@ class SpirvThread {
     constants();
     variables();
     blocks();
+    if (payload) give_payload();
   }
 
  private:
@@ -82,11 +104,6 @@ class SpirvThread {
   using Float = Native::Float;
   using Int = Native::Int;
 
-  struct Word {
-    uint32_t bits = 0;
-    bool known = false;
-  };
-  using Words = std::vector<Word>;
   enum class Place : uint8_t { Variable, Memory, Block, Texture, Picture, Tree };
   struct Pointer {
     Place place = Place::Variable;
@@ -173,7 +190,7 @@ class SpirvThread {
           else if (variable.storage == spv::StorageClass::HitAttributeKHR)
             words = hit_attributes(module_.scalars(pointer.element));
           else if (variable.storage == spv::StorageClass::IncomingRayPayloadKHR)
-            words = incoming_payload(pointer.element);
+            words = payload ? *payload : incoming_payload(pointer.element);
           else if (variable.initial != 0)
             words = get(variable.initial);
           words.resize(module_.scalars(pointer.element));
@@ -200,6 +217,14 @@ class SpirvThread {
     return words;
   }
 
+  /// From where the machine's ray begins.
+  Words along_ray(float t) const {
+    Words place = input_words(word::kOrigin, 3);
+    const Words direction = input_words(word::kDirection, 3);
+    for (size_t i = 0; t != 0.0f && i < 3; ++i) place[i] = add(mul(of(t), direction[i]), place[i]);
+    return place;
+  }
+
   Words built_in(uint32_t number, uint32_t type) const {
     const bool is_hit = kernel_ == RayKernel::CastSecondary || kernel_ == RayKernel::CastSecondaryDirect;
     switch (static_cast<spv::BuiltIn>(number)) {
@@ -209,14 +234,14 @@ class SpirvThread {
         return {known(resources_.width), known(resources_.height), known(1)};
       case spv::BuiltIn::WorldRayOriginKHR:
       case spv::BuiltIn::ObjectRayOriginKHR:
-        return input_words(word::kOrigin, 3);
+        return along_ray(-least);
       case spv::BuiltIn::WorldRayDirectionKHR:
       case spv::BuiltIn::ObjectRayDirectionKHR:
         return input_words(word::kDirection, 3);
       case spv::BuiltIn::RayTminKHR:
-        return {of(0.0f)};
+        return {of(least)};
       case spv::BuiltIn::RayTmaxKHR:
-        return input_words(is_hit ? word::kDistance : word::kLimit, 1);
+        return {add(input_words(is_hit ? word::kDistance : word::kLimit, 1)[0], of(least))};
       case spv::BuiltIn::PrimitiveId:
         return input_words(word::kTriangle, 1);
       case spv::BuiltIn::InstanceId:
@@ -229,7 +254,7 @@ class SpirvThread {
         return {known(arith::greater(along.bits, 0, mode()) ? 0xffu : 0xfeu)};
       }
       case spv::BuiltIn::IncomingRayFlagsKHR:
-        return {known(kernel_ == RayKernel::Shade ? 12u : 0u)};
+        return {known(ray_flags.value_or(kernel_ == RayKernel::Shade ? 12u : 0u))};
       case spv::BuiltIn::ObjectToWorldKHR:
       case spv::BuiltIn::WorldToObjectKHR: {
         const uint32_t rows = module_.scalars(module_.type(type).element);
@@ -265,6 +290,14 @@ class SpirvThread {
     else
       all.push_back(type);
     return all;
+  }
+
+  void give_payload() {
+    for (const auto& [id, variable] : module_.variables()) {
+      if (variable.storage != spv::StorageClass::IncomingRayPayloadKHR) continue;
+      const Words& words = storage_.at(id);
+      for (size_t i = 0; i < std::min(words.size(), payload->size()); ++i) (*payload)[i] = words[i];
+    }
   }
 
   bool is_tag(uint32_t scalar) const {
@@ -1320,12 +1353,22 @@ class SpirvThread {
     }
     put(word::kLimit, tmax);
     put(word::kPixel, known(pixel_));
+    const Pointer& carried_by = pointer(o.at(10));
+    if (call) {
+      if (std::count(ray.defined.begin(), ray.defined.begin() + word::kPixel, 0u) != 0)
+        throw UndefinedBehaviour("a ray that is not defined is traced");
+      Words carried = read(carried_by);
+      Call its = {ray.words, decided(get(o[1]).at(0)), decided(get(o.at(5)).at(0)), decided(get(o.at(3)).at(0)), 0};
+      its.least = as_float(tmin.bits);
+      call(*this, its, carried);
+      write(carried_by, carried);
+      return;
+    }
     uint32_t depth = 1;
     if (kernel_ != RayKernel::CastEye) depth = (input[word::kFlags] & kDepthMask) + (shadow ? 0 : 1);
     uint32_t flags = depth | (shadow ? kShadowFlag : 0), flags_defined = 0xff0000ffu;
-    const Pointer& payload = pointer(o.at(10));
-    const Words carried = read(payload);
-    const std::vector<uint32_t> types = leaves(payload.type);
+    const Words carried = read(carried_by);
+    const std::vector<uint32_t> types = leaves(carried_by.type);
     size_t next = word::kColor;
     for (size_t i = 0; i < types.size(); ++i) {
       if (is_tag(types[i])) {

@@ -1,4 +1,5 @@
-// expect: .rchit
+// expect: closest-hit
+// expect: ray generation
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "raypool.glsl"
@@ -7,10 +8,9 @@ layout(location = 0) rayPayloadInEXT vec3 color;
 layout(location = 1) rayPayloadEXT vec3 light;
 hitAttributeEXT RaypoolHit hit;
 
-const uint kShadow = gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
-
 void main() {
   const vec3 place = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT + 0.001 * hit.normal;
-  light = color * abs(hit.normal);
-  traceRayEXT(raypool_tree, kShadow, 0xff, 0, 1, 0, place, 0.0, raypool_frame.light_position - place, 1.0, 1);
+  color *= 0.5;
+  traceRayEXT(raypool_tree, gl_RayFlagsOpaqueEXT, 0xff, 0, 1, 0, place, 0.0, reflect(gl_WorldRayDirectionEXT, hit.normal), 1e30, 0);  // here
+  traceRayEXT(raypool_tree, gl_RayFlagsOpaqueEXT, 0xff, 0, 1, 0, place, 0.0, gl_WorldRayDirectionEXT, 1e30, 0);
 }

@@ -1,4 +1,4 @@
-// expect: shadow ray
+// expect: gl_RayFlagsCullOpaqueEXT
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "raypool.glsl"
@@ -11,7 +11,6 @@ const uint kShadow = gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestH
 
 void main() {
   const vec3 place = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT + 0.001 * hit.normal;
-  light = color * 0.5;
-  traceRayEXT(raypool_tree, kShadow, 0xff, 0, 1, 0, place, 0.0, raypool_frame.light_position - place, 1.0, 1);
-  traceRayEXT(raypool_tree, kShadow, 0xff, 0, 1, 0, place, 0.0, raypool_frame.eye - place, 1.0, 1);  // here
+  light = color;
+  traceRayEXT(raypool_tree, kShadow | gl_RayFlagsCullOpaqueEXT, 0xff, 0, 1, 0, place, 0.0, hit.normal, 1.0, 1);  // here
 }

@@ -1,0 +1,6 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+
+layout(location = 0) rayPayloadInEXT vec3 found;
+
+void main() { found = vec3(0.0, 0.0, 0.2); }
