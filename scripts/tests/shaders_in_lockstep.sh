@@ -19,7 +19,8 @@ on_unit() {
   library=()
 }
 
-# on_chip TRAVERSER: draws on a chip that has of everything one. Tests of tb/rtl Verilate it too.
+# on_chip TRAVERSER [returns]: draws on a chip that has of everything one, and with a second word on one whose rays come
+# back if they meet nothing, too. Tests of tb/rtl Verilate the first ones too.
 on_chip() {
   local name settings="chip.traverser=$1 instruction_cache.bytes=512 data_cache.bytes=512 data_cache.mshrs=1"
   settings+=" chip.held_limit=1 chip.ray_pool.size=1 chip.intersection_pool.size=1 chip.memory.queue=1"
@@ -36,6 +37,10 @@ on_chip() {
     settings+=" chip.hardware_traverser.node_cache_bytes=512 chip.hardware_traverser.triangle_cache_bytes=512"
     settings+=" chip.hardware_traverser.node_cache_ways=2 chip.hardware_traverser.triangle_cache_ways=2"
   fi
+  if [ $# -gt 1 ]; then
+    name+=_returns
+    settings+=" chip.miss_records=true"
+  fi
   # In a file, since sim refuses settings of what a chip does not have.
   "$raypool" config 1w1c --set "$settings" --json > "$folder/$name.json"
   machine=(--config "$folder/$name.json")
@@ -50,7 +55,9 @@ on_chip() {
 # draw SCENE SET SIZE DEPTH SAMPLES
 draw() {
   local scene=$1 set=$2 engine words
-  words=(--scene "$scene" --detail 0.05 --shaders "shaders/$set" --size "$3" --depth "$4" --samples "$5"
+  local folder_of=shaders/$set
+  [ -d "$folder_of" ] || folder_of=cpp_model/shader/cases/$set
+  words=(--scene "$scene" --detail 0.05 --shaders "$folder_of" --size "$3" --depth "$4" --samples "$5"
     "${machine[@]}")
   for engine in native functional lockstep; do
     beside=()
@@ -86,14 +93,32 @@ draw_large() {
   draw $features debug 16x12 1 1
   draw $features path 6x4 4 2
 }
+# Shaders that wait for their rays.
+wait_small() {
+  draw cornell shadow_inside 6x4 1 1
+}
+wait_large() {
+  draw cornell triangle 16x12 1 1
+  draw $features reflections 12x8 1 1
+  draw $features shadow_inside 16x12 1 1
+  draw cornell bounces 6x4 1 1
+  draw cornell groups 12x8 1 1
+  draw $features cutouts 12x8 1 1
+}
 if [ "$boundary" = unit ]; then
   on_unit
   "draw_$size"
+  "wait_$size"
+elif [ "$size" = small ]; then
+  on_chip static
+  draw_small
+  on_chip hardware returns
+  wait_small
 else
   on_chip static
-  "draw_$size"
-  if [ "$size" = large ]; then
-    on_chip hardware
-    draw_small
-  fi
+  draw_large
+  on_chip hardware
+  draw_small
+  on_chip hardware returns
+  wait_large
 fi

@@ -33,7 +33,8 @@ void DrawingCommands::add_sim_command() {
 void DrawingCommands::add_shader_options(CLI::App& sim_app) {
   sim_app
       .add_option("--shaders", sim_.shaders,
-                  "a folder with GLSL shaders (.rgen, .rchit, .rmiss) that draw in place of the built-in kernels")
+                  "a folder with GLSL shaders (.rgen, .rchit, .rmiss, .rahit) that draw in place of the built-in "
+                  "kernels")
       ->type_name("FOLDER")
       ->group(option_group::kScene);
   sim_app

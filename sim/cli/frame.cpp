@@ -49,7 +49,7 @@ void check_fits(const RunRecord& record, const Scene& scene) {
   }
   record_layout(ray_program(record), record.configuration);
   const Program& program = ray_program(record).program;
-  for (const RayKernel kernel : kernels_of(chip, record.depth, record.reflections))
+  for (const RayKernel kernel : kernels_of(chip, record.chip_depth(), record.reflections))
     check_instructions(program, std::string(kRayKernelNames[kernel]), record.configuration);
 }
 
@@ -85,7 +85,7 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   chip.arguments = arguments_of(record, scene);
   chip.width = record.width;
   chip.height = record.height;
-  chip.depth = record.depth;
+  chip.depth = record.chip_depth();
   chip.reflections = record.reflections;
   chip.tracer = &around.scene_tracer;
   chip.tree = around.tree ? &*around.tree : nullptr;
@@ -103,7 +103,7 @@ NativeOptions native_options(const RunRecord& record) {
   NativeOptions native;
   native.width = record.width;
   native.height = record.height;
-  native.depth = record.depth;
+  native.depth = record.chip_depth();
   native.reflections = record.reflections;
   native.contents = record.configuration.contents();
   native.threads = threads_or_all();

@@ -34,6 +34,10 @@ struct RunRecord {
   int width = 0, height = 0;
   int depth = 0;
   bool reflections = false;  ///< are cast
+  bool waits = false;        ///< shaders go on when their rays have come back
+  /// Of the deepest rays that the chip keeps. Where shaders wait these are the rays that follow a path's first one,
+  /// whatever `depth` means to them.
+  int chip_depth() const { return waits ? 2 : depth; }
   int units = 0;
   std::optional<ChipResult> chip;                   ///< engines with a chip
   std::optional<NativeStatistics> native;           ///< engines native, estimate and sampled

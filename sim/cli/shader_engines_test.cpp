@@ -166,6 +166,34 @@ TEST_F(ShaderEngines, DrawTheSamePictureWithRecordsOfTheWordsThatASetNeeds) {
   EXPECT_GT(needed.size(), 2u);
 }
 
+/// Those whose shaders wait for their rays.
+const std::vector<std::string> kWaiting = {"triangle", "reflections", "shadow_inside", "bounces", "groups", "cutouts"};
+
+TEST_F(ShaderEngines, DrawTheSamePictureWhereShadersWaitForTheirRays) {
+  const std::vector<std::vector<std::string>> machines = {
+      {"chip.traverser=static"},
+      {"chip.traverser=hardware", "triples=true", "arithmetic.fma=true"},
+      {"chip.traverser=static", "kernel_overlap=true", "lanes=8", "warps=1", "data_cache.bytes=512"},
+  };
+  for (const std::string& set : kWaiting) {
+    for (const std::vector<std::string>& machine : machines) {
+      SimOptions waiting = options("cpp_model/shader/cases/" + set, "cornell", machine);
+      waiting.depth = 1;  // of what the chip counts they have their own
+      agree(waiting, {"native", "functional", "model"});
+    }
+    const std::string needs = refusal(options("cpp_model/shader/cases/" + set, "cornell", {"chip.miss_records=false"}));
+    EXPECT_NE(needs.find("chip.miss_records=true"), std::string::npos) << needs;
+  }
+}
+
+TEST_F(ShaderEngines, RefuseSeveralUnitsWherePathsKeepSomethingInMemory) {
+  SimOptions several = options("cpp_model/shader/cases/triangle", "cornell");
+  several.units = 2;
+  agree(several);
+  several.shaders = "cpp_model/shader/cases/reflections";
+  EXPECT_NE(refusal(several).find("draw with --units 1"), std::string::npos) << refusal(several);
+}
+
 TEST_F(ShaderEngines, DrawTheSamePictureInPathsOfManySamples) {
   SimOptions deep = options("path", kTextured, {"triples=true", "arithmetic.fma=true", "chip.traverser=static"});
   deep.depth = 5;

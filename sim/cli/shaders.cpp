@@ -31,6 +31,30 @@ std::vector<fs::path> files_in(const std::string& folder) {
   return files;
 }
 
+void check_units_that_wait(const shader::Resources& resources, const RunRecord& record) {
+  if (resources.path_words == 0 || record.units == 1) return;
+  throw InputError(
+      fmt::format("the shaders wait for rays, and {} words that a path keeps meanwhile may lie in the cache of another "
+                  "unit, as caches of {} units do not see each other's stores: draw with --units 1",
+                  resources.path_words, record.units));
+}
+
+/// Room for what kernels keep of their threads, and for records of paths.
+void grow_for_paths(MemoryImage& image, const shader::ShaderSet& set, const shader::Resources& resources,
+                    const RunRecord& record) {
+  constexpr uint64_t kMost = uint64_t{1} << 30;
+  const uint64_t spilled = resources.saved_stride() * static_cast<uint64_t>(record.kernels->slots);
+  const uint64_t bytes = resources.paths_bytes() + spilled;
+  if (bytes > kMost) {
+    throw InputError(
+        fmt::format("shaders {}: {} values that find no register and {} words of each path need {} bytes of memory for "
+                    "{}x{} pixels and depth {}, and may have {}: draw a smaller picture, or less deep",
+                    set.folder(), record.kernels->slots, resources.path_words, bytes, record.width, record.height,
+                    record.depth, kMost));
+  }
+  image.memory.grow(resources.saved + static_cast<uint32_t>((bytes + 63) / 64 * 64));
+}
+
 }  // namespace
 
 void check_shaders(const SimOptions& options, Engine engine) {
@@ -69,6 +93,11 @@ void check_shaders(const RunRecord& record) {
         "chip.shading is traverser, which adds to the picture without a miss shader: draw with --set "
         "chip.shading=kernel");
   }
+  if (record.waits && !chip.miss_records) {
+    throw InputError(
+        "the shaders wait for rays, which must come back even if they meet nothing: draw with --set "
+        "chip.miss_records=true");
+  }
   if (record.reflections && !chip.reflections) {
     throw InputError(fmt::format(
         "depth {} traces rays from closest-hit shaders, but {} has no kernel for them (chip.reflections): draw with "
@@ -90,18 +119,15 @@ MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSe
   frame.camera = camera_numbers(scene, frame.width, frame.height);
   frame.offset = static_cast<float>(
       offset_share(longest_direction(frame.camera, frame.width, frame.height), record.configuration.significand));
-  const shader::Resources resources = options.shader_source.memory(image, scene, set, frame);
+  shader::Resources resources = options.shader_source.memory(image, scene, set, frame);
+  if (record.waits) {
+    resources.path_words = set.path_words(resources.specialization);
+    resources.depth = 0;  // a path has but one kernel at a time
+    check_units_that_wait(resources, record);
+  }
   const KernelTarget target(record.configuration);
   record.kernels = std::make_shared<const RayProgram>(make_ray_program(set.record(resources, target), target));
-  constexpr uint64_t kMostSaved = uint64_t{1} << 30;
-  const uint64_t saved = resources.saved_stride() * static_cast<uint64_t>(record.kernels->slots);
-  if (saved > kMostSaved) {
-    throw InputError(
-        fmt::format("shaders {}: {} values that find no register need {} bytes of memory for {}x{} pixels "
-                    "and depth {}, and may have {}: draw a smaller picture, or less deep",
-                    set.folder(), record.kernels->slots, saved, record.width, record.height, record.depth, kMostSaved));
-  }
-  image.memory.grow(resources.saved + static_cast<uint32_t>((saved + 63) / 64 * 64));
+  grow_for_paths(image, set, resources, record);
   store_program(record.kernels->program, image.memory);
   return image;
 }

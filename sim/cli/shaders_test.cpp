@@ -27,6 +27,8 @@ class RecordedSet : public shader::ShaderSet {
   const std::string& folder() const override { return folder_; }
   const std::vector<shader::Binding>& bindings() const override { return bindings_; }
   const std::vector<shader::Member>& push_constants() const override { return constants_; }
+  bool waits() const override { return false; }
+  uint32_t path_words(const std::map<uint32_t, uint32_t>& /*specialization*/) const override { return 0; }
   RayFunctions record(const shader::Resources& resources, const KernelTarget& target,
                       const RecordLayout& /*layout*/) const override {
     return record_(resources, target);

@@ -492,8 +492,12 @@ void print_table(const SimOptions& options, const RunRecord& record, const Outpu
 }
 
 /// The record of a run from its options, before its scene is read.
-RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& size) {
+RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& size, const shader::ShaderSet* shaders) {
   RunRecord record;
+  if (shaders != nullptr) {
+    record.shaders = options.shaders;
+    record.waits = shaders->waits();
+  }
   record.command = options.command;
   record.engine = options.engine;
   if (has_verilog(engine)) record.boundary = options.boundary.empty() ? "unit" : options.boundary;
@@ -504,6 +508,8 @@ RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& s
   }
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
+  // Whoever brings such shaders need not know what the chip must have for them; the machine's name shows it.
+  if (record.waits && !is_chosen(options, "chip.miss_records")) set.emplace_back("chip.miss_records=true");
   record.configuration = load_configuration(options.config, set);
   check_fields_in_use(record.configuration);
   record.width = size.width;
@@ -544,19 +550,16 @@ int sim_command(const SimOptions& options) {
   const ImageSize size = parse_image_size(options.size);
   check(options, engine);
 
-  RunRecord record = record_of(options, engine, size);
   std::shared_ptr<const shader::ShaderSet> shaders;
-  if (!options.shaders.empty()) {
-    shaders = options.shader_source.load(options.shaders);
-    record.shaders = options.shaders;
-  }
+  if (!options.shaders.empty()) shaders = options.shader_source.load(options.shaders);
+  RunRecord record = record_of(options, engine, size, shaders.get());
   const Scene scene =
       load_scene_and_warn(options.scene, options.detail, options.view, options.look, !options.shaders.empty());
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();
   record.view = scene.view();
-  record.reflections = record.depth > 1 && (shaders || scene.reflects());
+  record.reflections = record.chip_depth() > 1 && (shaders || scene.reflects());
   tell_centre(options, scene);
   MemoryImage image = build_image(options, record, scene, shaders.get());
   if (options.modules) {

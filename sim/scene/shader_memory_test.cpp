@@ -32,6 +32,8 @@ class DeclaredSet : public shader::ShaderSet {
   const std::string& folder() const override { return folder_; }
   const std::vector<Binding>& bindings() const override { return bindings_; }
   const std::vector<Member>& push_constants() const override { return push_constants_; }
+  bool waits() const override { return false; }
+  uint32_t path_words(const std::map<uint32_t, uint32_t>& /*specialization*/) const override { return 0; }
   EnumArray<RayKernel, kernel::Function, kRayKernels> record(const shader::Resources&, const KernelTarget&,
                                                              const RecordLayout&) const override {
     throw InputError("nothing is recorded here");
