@@ -118,14 +118,14 @@ class TileCounter {
       TraversalCounts counts;
       goes_on = tracer_.trace(ray, hit, &counts, &visits_.places);
       visits_.ends.push_back(visits_.places.size());
-      visits_.kinds.push_back({tile, chip::is_shadow(ray) ? kShadowDepth : ray[word::kFlags] & kDepthMask});
+      visits_.kinds.push_back({tile, raypool::is_shadow(ray) ? kShadowDepth : ray[word::kFlags] & kDepthMask});
       nodes_[tile] += counts.nodes;
       triangles_[tile] += counts.triangles;
     } else {
       goes_on = tracer_.trace(ray, hit);
     }
     counts_[tile].count(ray, goes_on);
-    reflecting_[tile] += goes_on && !chip::is_shadow(ray) && tracer_.reflects(hit[word::kMaterial]);
+    reflecting_[tile] += goes_on && !raypool::is_shadow(ray) && tracer_.reflects(hit[word::kMaterial]);
     return goes_on;
   }
 
