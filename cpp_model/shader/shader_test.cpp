@@ -224,13 +224,16 @@ TEST_P(ShaderFolders, LeaveWhatTheirSpirvLeaves) {
       outcome.contributions);
 }
 
+/// But for those that wait for their rays, which waits_test.cpp and shader_engines_test.cpp compare.
 std::vector<std::string> folders() {
+  const std::set<std::string> waiting = {"triangle", "reflections", "shadow_inside", "bounces", "groups", "cutouts"};
   std::vector<std::string> names;
   for (const char* outer : {"shaders", "cpp_model/shader/cases"}) {
     const fs::path folder = fs::path(data_folder()) / outer;
     if (!fs::is_directory(folder)) continue;
     for (const fs::path& path : sorted(folder))
-      if (fs::is_directory(path)) names.push_back(fmt::format("{}/{}", outer, path.filename().string()));
+      if (fs::is_directory(path) && waiting.count(path.filename().string()) == 0)
+        names.push_back(fmt::format("{}/{}", outer, path.filename().string()));
   }
   return names;
 }

@@ -489,7 +489,7 @@ void main() {
   expect_offsets("%RaypoolMaterial", {0, 12, 16, 28, 32, 36, 40, 44, 48, 52, 56, 60});
   expect_offsets("%RaypoolLight", {0, 12, 16, 28, 32, 44, 48, 60, 64, 68, 72, 76});
   expect_offsets("%RaypoolRecord", {kMaterialDiffuse, kMaterialSurface, kMaterialReflectance});
-  EXPECT_EQ(offsets["%RaypoolFrame"].size(), 16u);
+  EXPECT_EQ(offsets["%RaypoolFrame"].size(), 17u);
 }
 
 }  // namespace
