@@ -55,7 +55,7 @@ void remove_unreached(Function& function) {
       continue;
     }
     const bool jumps = is(op, Opcode::Jnone) || is(op, Opcode::Loop);
-    // The whole warp changes its slice, whoever asks for it.
+    // It changes the slice of the whole warp, under an empty mask too.
     const bool stays = !is_nobody(op) || op.info->kind == raypool::Kind::Swap;
     if (stays)
       kept.push_back(op);

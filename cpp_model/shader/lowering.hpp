@@ -178,13 +178,13 @@ class Lowering {
 
   // lowering_paths.cpp: what rays and records take along
   void send(const Line& line, const TraceSite& site);
-  bool is_called_again(bool skips_closest_hit) const;
   void go_on(const TraceSite& site);
   void take_payload_back(const Line& line);
   void flush_products();
   void declare_held();
   template <typename Visit>
   void for_each_held(const TraceSite& site, const Visit& visit);
+  Scalar from_word(const Scalar& word, bool is_condition);
   Scalar record_word(uint32_t number);
   void put_record_word(uint32_t number, const Scalar& value);
   /// Payload of a ray that has come, and what goes back to who has traced it.
@@ -204,6 +204,7 @@ class Lowering {
   template <typename Put>
   void for_each_payload(const Put& put);
   Scalar plus(const Scalar& a, const Scalar& b);
+  Scalar has_flag(uint32_t flag);
   Scalar goes_to(bool met, uint32_t index);
   void declare_stored(const Module& shader);
   void store_later(const Value& place, const Value& colour);

@@ -79,6 +79,12 @@ uint32_t words_of_hit(const WaitingShaders& shaders, const WaitingShader& shader
   return most_held_words(shader.module, shader.waits) + 1 + passed;
 }
 
+/// Words of the ray that hold scalars 3 .. 9 of what a shader gives back: nobody needs its origin and direction then.
+bool goes_back_in_word(uint32_t scalar) { return scalar < kPayloadInRay + word::kPixel; }
+int word_back(uint32_t scalar) {
+  return static_cast<int>(scalar < kPayloadInRay ? word::kColor + scalar : scalar - kPayloadInRay);
+}
+
 }  // namespace
 
 uint32_t path_words(const WaitingShaders& shaders) {
@@ -159,10 +165,15 @@ void Lowering::declare_stored(const Module& shader) {
   }
 }
 
+/// Rays with this bit of the flags word.
+Scalar Lowering::has_flag(uint32_t flag) {
+  return compare(Opcode::Ine, immediate(Opcode::And, *flags_, flag), Scalar::constant(0));
+}
+
 /// Rays that were sent to the closest-hit shader of this index and have met something, or to the miss shader and have
 /// not.
 Scalar Lowering::goes_to(bool met, uint32_t index) {
-  const Scalar hit = compare(Opcode::Ine, immediate(Opcode::And, *flags_, kMetFlag), Scalar::constant(0));
+  const Scalar hit = has_flag(kMetFlag);
   const size_t shaders = met ? path_->shaders.closest_hits.size() : path_->shaders.misses.size();
   Scalar chosen = Scalar::constant(1);
   if (shaders > 1) {
@@ -176,8 +187,7 @@ Scalar Lowering::goes_to(bool met, uint32_t index) {
 Scalar Lowering::called(bool met, uint32_t index) {
   const Scalar its = goes_to(met, index);
   if (!met) return its;
-  const Scalar runs = compare(Opcode::Ieq, immediate(Opcode::And, *flags_, kNoClosestHit), Scalar::constant(0));
-  const Scalar called = both(its, runs);
+  const Scalar called = both(its, inverse(has_flag(kNoClosestHit)));
   return path_->ignored ? both(called, Scalar::in_predicate(*path_->ignored, true)) : called;
 }
 
@@ -192,7 +202,7 @@ void Lowering::ignore_sides() {
         asks = either(asks, compare(Opcode::Ieq, path_->site, Scalar::constant(site.number)));
     });
     if (asks.is_constant()) return;
-    under(both(asks, goes_to(true, 0)), [&] {
+    under(both(asks, has_flag(kMetFlag)), [&] {
       const Scalar back =
           compare(Opcode::Fgt, dot(ray_words(word::kDirection), ray_words(word::kNormal)), Scalar::constant(0));
       under(backs ? back : inverse(back), [&] { recorder_.join(*path_->ignored); });
@@ -205,7 +215,7 @@ void Lowering::ignore_sides() {
 void Lowering::run_any_hit(const AnyHitShader& shader) {
   Scalar its = Scalar::constant(0);
   for (const uint32_t index : shader.closest_hits) its = either(its, goes_to(true, index));
-  const Scalar asks = compare(Opcode::Ine, immediate(Opcode::And, *flags_, kAsksAnyHit), Scalar::constant(0));
+  const Scalar asks = has_flag(kAsksAnyHit);
   const Scalar counts = Scalar::in_predicate(*path_->ignored, true);
   const Waits none;
   waits_ = &none;
@@ -297,6 +307,11 @@ void Lowering::store_later(const Value& place, const Value& colour) {
   });
 }
 
+/// A value as words hold it: a condition is 0 or not.
+Scalar Lowering::from_word(const Scalar& word, bool is_condition) {
+  return is_condition ? compare(Opcode::Ine, word, Scalar::constant(0)) : word;
+}
+
 Scalar Lowering::record_word(uint32_t number) {
   const uint32_t offset = resources_.saved + 4 * number;
   return of(k_.load_int(as_int(path_->record), static_cast<int>(offset)));
@@ -308,12 +323,6 @@ void Lowering::put_record_word(uint32_t number, const Scalar& value) {
   k_.store(as_int(path_->record), static_cast<int>(offset), as_int(value));
 }
 
-/// Words of the ray that hold scalars 3 .. 9 of what a shader gives back: nobody needs its origin and direction then.
-bool goes_back_in_word(uint32_t scalar) { return scalar < kPayloadInRay + word::kPixel; }
-int word_back(uint32_t scalar) {
-  return static_cast<int>(scalar < kPayloadInRay ? word::kColor + scalar : scalar - kPayloadInRay);
-}
-
 Scalar Lowering::payload_scalar(uint32_t number) {
   if (number < kPayloadInRay) return of(k_.int_word(word::kColor + static_cast<int>(number)));
   return record_word(number - kPayloadInRay);
@@ -323,8 +332,7 @@ Scalar Lowering::payload_scalar(uint32_t number) {
 void Lowering::take_payload(uint32_t id, uint32_t type) {
   Value value;
   for (uint32_t i = 0; i < module_.scalars(type); ++i) {
-    const Scalar word = payload_scalar(i);
-    value.push_back(is_condition(type, i) ? compare(Opcode::Ine, word, Scalar::constant(0)) : word);
+    value.push_back(from_word(payload_scalar(i), is_condition(type, i)));
   }
   keep(id, type, value);
 }
@@ -355,9 +363,8 @@ void Lowering::give_payload() {
 void Lowering::give_back_unread() {
   const uint32_t most = most_payload(path_->shaders);
   if (most <= kPayloadInRay) return;
-  const Scalar hit = compare(Opcode::Ine, immediate(Opcode::And, *flags_, kMetFlag), Scalar::constant(0));
-  const Scalar skips = compare(Opcode::Ine, immediate(Opcode::And, *flags_, kNoClosestHit), Scalar::constant(0));
-  Scalar nobody = both(hit, skips);
+  const Scalar hit = has_flag(kMetFlag);
+  Scalar nobody = both(hit, has_flag(kNoClosestHit));
   if (path_->shaders.misses.empty()) nobody = either(nobody, inverse(hit));
   if (path_->ignored) nobody = both(nobody, Scalar::in_predicate(*path_->ignored, true));
   under(nobody, [&] {
@@ -443,16 +450,16 @@ void Lowering::run_waiting(const Waits& waits, const Scalar& starts, uint32_t fi
   });
 }
 
-/// Calls visit(variable, is a condition, word of the record) for each scalar that is held across the site.
+/// Calls visit(variable, word of the record) for each scalar that is held across the site.
 template <typename Visit>
 void Lowering::for_each_held(const TraceSite& site, const Visit& visit) {
   uint32_t word = first_word_;
-  if (return_) visit(*return_, false, word++);
-  for (Scalar& scalar : passed_) visit(scalar, false, word++);
+  if (return_) visit(*return_, word++);
+  for (Scalar& scalar : passed_) visit(scalar, word++);
   for (const uint32_t id : site.held) {
     const bool is_value = waits_->values.count(id) != 0;
     Value& held = is_value ? kept_.at(id) : variables_.at(id);
-    for (Scalar& scalar : held) visit(scalar, scalar.kind == Scalar::Kind::Predicate, word++);
+    for (Scalar& scalar : held) visit(scalar, word++);
   }
 }
 
@@ -467,7 +474,9 @@ void Lowering::send(const Line& line, const TraceSite& site) {
   const bool skips = (flags.bits & ray_flag::kSkipsClosestHit) != 0;
   const bool asks = !path_->shaders.any_hits.empty() && (flags.bits & ray_flag::kOpaque) == 0;
   const bool all_count = !asks && (flags.bits & (ray_flag::kCullsBack | ray_flag::kCullsFront)) == 0;
-  if (is_called_again(skips)) {
+  if (kernel_ == RayKernel::Shade)
+    fail("a miss shader traces a ray: trace it in the shader that its payload comes from");
+  if (kernel_ == RayKernel::CastSecondary && !skips) {
     fail(
         "a closest-hit shader traces a ray that may come to a closest-hit shader, and waits for it: trace such rays in "
         "a loop of the ray generation shader, or with gl_RayFlagsSkipClosestHitShaderEXT");
@@ -497,8 +506,7 @@ void Lowering::send(const Line& line, const TraceSite& site) {
   const uint32_t bits = (path.comes_back ? 2 : 1) | site.number << kSiteShift | kReturnsFlag |
                         (skips ? kNoClosestHit : 0) | (asks ? kAsksAnyHit : 0) | (skips && all_count ? kFirstFlag : 0);
   const Scalar word = immediate(Opcode::Or, binary(Opcode::Or, miss, hit), bits);
-  flush_products();
-  for_each_held(site, [&](const Scalar& scalar, bool, uint32_t number) { put_record_word(number, scalar); });
+  for_each_held(site, [&](const Scalar& scalar, uint32_t number) { put_record_word(number, scalar); });
   if (records_begin(path.shaders)) put_record_word(begin_word(path.shaders), least);
   for (int i = 0; i < 3; ++i) put_word(word::kOrigin + i, origin[static_cast<size_t>(i)]);
   for (int i = 0; i < 3; ++i) put_word(word::kDirection + i, direction[static_cast<size_t>(i)]);
@@ -511,18 +519,12 @@ void Lowering::send(const Line& line, const TraceSite& site) {
   if (path_->comes_back) assign(path_->site, Scalar::constant(0));
 }
 
-/// Whether a ray may come to a shader of the kind that traces it.
-bool Lowering::is_called_again(bool skips_closest_hit) const {
-  return kernel_ == RayKernel::Shade || (kernel_ == RayKernel::CastSecondary && !skips_closest_hit);
-}
-
 void Lowering::go_on(const TraceSite& site) {
   way_ = {};
   if (site.in_loop) assign(path_->site, Scalar::constant(0));
   take_payload_back(*site.line);
-  for_each_held(site, [&](Scalar& scalar, bool is_condition, uint32_t number) {
-    const Scalar word = record_word(number);
-    assign(scalar, is_condition ? compare(Opcode::Ine, word, Scalar::constant(0)) : word);
+  for_each_held(site, [&](Scalar& scalar, uint32_t number) {
+    assign(scalar, from_word(record_word(number), scalar.kind == Scalar::Kind::Predicate));
   });
 }
 
@@ -531,7 +533,7 @@ void Lowering::take_payload_back(const Line& line) {
   Value& value = variables_.at(payload_of(line));
   for (uint32_t i = 0; i < value.size(); ++i) {
     const Scalar word = goes_back_in_word(i) ? of(k_.int_word(word_back(i))) : record_word(i - kPayloadInRay);
-    assign(value[i], is_condition(type, i) ? compare(Opcode::Ine, word, Scalar::constant(0)) : word);
+    assign(value[i], from_word(word, is_condition(type, i)));
   }
 }
 

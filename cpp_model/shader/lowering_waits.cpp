@@ -43,8 +43,10 @@ Scalar Lowering::coming(const std::set<uint32_t>& sites) {
 void Lowering::waiting_lines(const Block& block) {
   const auto part = [&](size_t first, size_t end) {
     way_ = {};
-    under(alive_, [&] { lines(block, first, end); });
-    flush_products();
+    under(alive_, [&] {
+      lines(block, first, end);
+      flush_products();
+    });
   };
   size_t begin = 0;
   for (size_t i = 0; i < block.lines.size(); ++i) {
@@ -69,6 +71,7 @@ void Lowering::waiting_side(const Scalar& chosen, uint32_t from, uint32_t to, ui
   const Scalar before = alive_;
   const bool enters = to != stop && !is_open(to);
   const Scalar its = both(before, chosen);
+  if (its == Scalar::constant(0)) return;  // no lane sends a ray from there, so none comes back to it
   const Scalar mask = enters ? either(its, coming(sites_from(to, stop))) : its;
   under(mask, [&] {
     alive_ = its;

@@ -172,7 +172,7 @@ class Paths {
       called.input = package;
       called.payload = payload;
       called.ray_flags = call.flags;
-      called.least = call.least;
+      called.begin = call.begin;
       run(called, steps);
       payload = *called.payload;
     };

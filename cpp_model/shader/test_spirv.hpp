@@ -59,7 +59,7 @@ class SpirvThread {
   struct Call {
     Ray ray{};
     uint32_t flags = 0, miss = 0, closest_hit = 0;
-    float least = 0;  ///< how far along the shader's ray this one begins
+    float begin = 0;  ///< how far along the shader's ray this one begins
   };
 
   /// `arguments`, `input`: as a kernel gets them. `input` is what CastEye does not read.
@@ -81,7 +81,7 @@ class SpirvThread {
   /// Of a shader that is called: the payload, before run() and behind it, and of the ray its flags and where it begins.
   std::optional<Words> payload;
   std::optional<uint32_t> ray_flags;
-  float least = 0;
+  float begin = 0;
 
   void run() {
     if (kernel_ == RayKernel::CastEye) {
@@ -234,14 +234,14 @@ class SpirvThread {
         return {known(resources_.width), known(resources_.height), known(1)};
       case spv::BuiltIn::WorldRayOriginKHR:
       case spv::BuiltIn::ObjectRayOriginKHR:
-        return along_ray(-least);
+        return along_ray(-begin);
       case spv::BuiltIn::WorldRayDirectionKHR:
       case spv::BuiltIn::ObjectRayDirectionKHR:
         return input_words(word::kDirection, 3);
       case spv::BuiltIn::RayTminKHR:
-        return {of(least)};
+        return {of(begin)};
       case spv::BuiltIn::RayTmaxKHR:
-        return {add(input_words(is_hit ? word::kDistance : word::kLimit, 1)[0], of(least))};
+        return {add(input_words(is_hit ? word::kDistance : word::kLimit, 1)[0], of(begin))};
       case spv::BuiltIn::PrimitiveId:
         return input_words(word::kTriangle, 1);
       case spv::BuiltIn::InstanceId:
@@ -1359,7 +1359,7 @@ class SpirvThread {
         throw UndefinedBehaviour("a ray that is not defined is traced");
       Words carried = read(carried_by);
       Call its = {ray.words, decided(get(o[1]).at(0)), decided(get(o.at(5)).at(0)), decided(get(o.at(3)).at(0)), 0};
-      its.least = as_float(tmin.bits);
+      its.begin = as_float(tmin.bits);
       call(*this, its, carried);
       write(carried_by, carried);
       return;

@@ -186,6 +186,21 @@ TEST_F(ShaderEngines, DrawTheSamePictureWhereShadersWaitForTheirRays) {
   }
 }
 
+/// The set looks at that itself, and stores green where it is so.
+TEST_F(ShaderEngines, AnyHitShadersAndCulledSidesPassOverTheRightHits) {
+  const fs::path green = folder_ / "green";
+  fs::create_directories(green);
+  const char* begin = "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"raypool.glsl\"\n";
+  std::ofstream(green / "a.rgen") << begin
+                                  << "void main() { imageStore(raypool_picture, ivec2(gl_LaunchIDEXT.xy), "
+                                     "vec4(0, 1, 0, 1)); }\n";
+  std::ofstream(green / "a.rchit") << begin << "void main() {}\n";
+  const std::string expected = drawn(options(green.string(), "cornell"), "native");
+  ASSERT_FALSE(expected.empty());
+  const SimOptions layers = options("cpp_model/shader/cases/layers", "cornell");
+  for (const char* engine : {"native", "model"}) EXPECT_TRUE(drawn(layers, engine) == expected) << engine;
+}
+
 TEST_F(ShaderEngines, RefuseSeveralUnitsWherePathsKeepSomethingInMemory) {
   SimOptions several = options("cpp_model/shader/cases/triangle", "cornell");
   several.units = 2;

@@ -10,7 +10,7 @@
 namespace raypool::convergence {
 
 inline constexpr double kPi = 3.14159265358979323846;
-inline constexpr double kDielectric = 0.04;  ///< reflected straight on by what is no metal
+inline constexpr double kDielectric = 0.04;  ///< reflectance of dielectrics at normal incidence
 
 /// glTF's alpha. A mirror has a width too, so that lights are found in it.
 inline double highlight_width(double roughness) { return std::max(roughness * roughness, 0.01); }

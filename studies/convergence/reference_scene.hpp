@@ -1,5 +1,5 @@
 // A scene as the reference sees it: what a ray meets, and which lights shine, in double precision. Embree finds which
-// triangle is hit; the place is computed anew from the corners.
+// triangle is hit; the place is recomputed from the corners.
 #pragma once
 
 #include <cstdint>

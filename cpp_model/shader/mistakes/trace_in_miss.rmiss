@@ -1,5 +1,4 @@
-// expect: traces a ray
-// expect: miss
+// expect: a miss shader traces a ray
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "raypool.glsl"
