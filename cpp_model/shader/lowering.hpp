@@ -80,11 +80,6 @@ struct Recording {
   std::optional<Path> path;            ///< of a kernel of shaders that wait
 };
 
-/// How rays leave a kernel, at most, of a thread.
-struct RayLimits {
-  int normal = 0, shadow = 0;
-};
-
 class Lowering {
  public:
   /// `kernel`: which the shader becomes, or would if it did not wait.
@@ -309,11 +304,11 @@ class Lowering {
   Value hit_attribute(uint32_t type);
   void load_payload(uint32_t id, const Variable& variable);
   void trace(const Line& line);
-  void check_flags(const Scalar& flags) const;
+  uint32_t ray_flags(const Line& line);
+  Scalar put_ray(const Line& line);
   void write_picture(const Line& line);
   void put_word(int number, const Scalar& value);
   void put_payload(uint32_t id, bool shadow);
-  void check_not_given_away(uint32_t id) const;
   std::vector<std::pair<int, bool>> payload_words(uint32_t type) const;
 
   [[noreturn]] void fail(const std::string& what) const { module_.fail(where_, what); }
@@ -347,8 +342,6 @@ class Lowering {
   bool tag_came_ = false;       // with it
   /// What holds of the lanes of the mask at one place.
   struct Way {
-    std::set<uint32_t> given_away;  // payloads that a ray has taken with it
-    RayLimits cast;
     std::map<std::pair<uint32_t, size_t>, Scalar> known;  // what scalars of variables have been set to
   };
   /// That of lanes from both.

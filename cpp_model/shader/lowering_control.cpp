@@ -212,9 +212,6 @@ void Lowering::under(const Scalar& chosen, const std::function<void()>& body) {
 Lowering::Way Lowering::joined(const std::optional<Way>& a, const Way& b) {
   if (!a) return b;
   Way both = *a;
-  add(both.given_away, b.given_away);
-  both.cast.normal = std::max(both.cast.normal, b.cast.normal);
-  both.cast.shadow = std::max(both.cast.shadow, b.cast.shadow);
   for (auto entry = both.known.begin(); entry != both.known.end();) {
     const auto other = b.known.find(entry->first);
     const bool same = other != b.known.end() && other->second == entry->second;

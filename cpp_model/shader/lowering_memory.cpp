@@ -339,7 +339,6 @@ Value Lowering::load_from(const Pointer& pointer) {
       return value;
     }
     case Pointer::To::Variable: {
-      check_not_given_away(pointer.variable);
       const Value& whole = variable(pointer.variable);
       const uint32_t size = module_.scalars(pointer.type);
       if (!pointer.dynamic.empty()) return chosen_part(whole, pointer, pointer.dynamic.size(), pointer.offset, size);
@@ -414,7 +413,6 @@ void Lowering::store_to(const Pointer& pointer, const Value& value) {
     }
     case Pointer::To::Variable: {
       variable(pointer.variable);  // there is one
-      way_.given_away.erase(pointer.variable);
       store_chosen(variables_.at(pointer.variable), pointer, pointer.dynamic.size(), pointer.offset, value);
       if (pointer.dynamic.empty()) {
         for (size_t i = 0; i < value.size(); ++i) way_.known[{pointer.variable, pointer.offset + i}] = value[i];

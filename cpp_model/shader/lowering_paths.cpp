@@ -289,7 +289,6 @@ kernel::Function Lowering::end_paths() {
 
 /// What is stored leaves at the kernel's end, as rays do: the words of one that waits to leave stay where they are.
 void Lowering::store_later(const Value& place, const Value& colour) {
-  if (loops_ > 0) fail("imageStore is called in a loop: add up first, and store behind the loop");
   const bool own = place.at(0).part == Scalar::Part::PixelX && place.at(1).part == Scalar::Part::PixelY;
   Scalar inside = Scalar::constant(1), pixel = *pixel_;
   if (!own) {
@@ -469,26 +468,16 @@ void Lowering::flush_products() {
 }
 
 void Lowering::send(const Line& line, const TraceSite& site) {
-  const Scalar flags = get_scalar(line.operands.at(1));
-  check_flags(flags);
-  const bool skips = (flags.bits & ray_flag::kSkipsClosestHit) != 0;
-  const bool asks = !path_->shaders.any_hits.empty() && (flags.bits & ray_flag::kOpaque) == 0;
-  const bool all_count = !asks && (flags.bits & (ray_flag::kCullsBack | ray_flag::kCullsFront)) == 0;
+  const uint32_t flags = ray_flags(line);
+  const bool skips = (flags & ray_flag::kSkipsClosestHit) != 0;
+  const bool asks = !path_->shaders.any_hits.empty() && (flags & ray_flag::kOpaque) == 0;
+  const bool all_count = !asks && (flags & (ray_flag::kCullsBack | ray_flag::kCullsFront)) == 0;
   if (kernel_ == RayKernel::Shade)
     fail("a miss shader traces a ray: trace it in the shader that its payload comes from");
   if (kernel_ == RayKernel::CastSecondary && !skips) {
     fail(
         "a closest-hit shader traces a ray that may come to a closest-hit shader, and waits for it: trace such rays in "
         "a loop of the ray generation shader, or with gl_RayFlagsSkipClosestHitShaderEXT");
-  }
-  Value origin = get(line.operands.at(6));
-  const Value direction = get(line.operands.at(8));
-  const Scalar least = get_scalar(line.operands.at(7));
-  Scalar most = get_scalar(line.operands.at(9));
-  if (!least.is_constant() || (least.bits & 0x7fffffffu) != 0) {
-    // The ray begins where it may first hit.
-    for (size_t i = 0; i < 3; ++i) origin[i] = multiply_add(direction[i], least, origin[i]);
-    most = binary(Opcode::Fsub, most, least);
   }
   const auto index = [&](uint32_t operand, const char* what, size_t count) {
     const Scalar its = get_scalar(line.operands.at(operand));
@@ -507,11 +496,8 @@ void Lowering::send(const Line& line, const TraceSite& site) {
                         (skips ? kNoClosestHit : 0) | (asks ? kAsksAnyHit : 0) | (skips && all_count ? kFirstFlag : 0);
   const Scalar word = immediate(Opcode::Or, binary(Opcode::Or, miss, hit), bits);
   for_each_held(site, [&](const Scalar& scalar, uint32_t number) { put_record_word(number, scalar); });
+  const Scalar least = put_ray(line);
   if (records_begin(path.shaders)) put_record_word(begin_word(path.shaders), least);
-  for (int i = 0; i < 3; ++i) put_word(word::kOrigin + i, origin[static_cast<size_t>(i)]);
-  for (int i = 0; i < 3; ++i) put_word(word::kDirection + i, direction[static_cast<size_t>(i)]);
-  put_word(word::kLimit, most);
-  put_word(word::kPixel, *pixel_);
   const Value payload = variable(payload_of(line));
   for (uint32_t i = 0; i < payload.size(); ++i) put_passed(i, payload[i]);
   put_word(word::kFlags, word);

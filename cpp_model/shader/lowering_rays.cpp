@@ -261,68 +261,47 @@ void Lowering::load_payload(uint32_t id, const Variable& variable) {
   keep(id, type, value);
 }
 
-void Lowering::check_not_given_away(uint32_t id) const {
-  if (way_.given_away.count(id) == 0) return;
-  fail(
-      fmt::format("payload '{}' is read after traceRayEXT, but a ray takes its payload along and the shader ends: add "
-                  "to the picture in the shaders that the ray comes to",
-                  module_.name_of(id)));
-}
-
 void Lowering::put_word(int number, const Scalar& value) {
   if (!value.is_undefined()) k_.set_word(number, as_int(value));
 }
 
-void Lowering::check_flags(const Scalar& flags) const {
+uint32_t Lowering::ray_flags(const Line& line) {
+  const Scalar flags = get_scalar(line.operands.at(1));
   if (!flags.is_constant()) fail("the ray flags are computed: give traceRayEXT constant flags");
   constexpr uint32_t kKnown = kShadowRay | ray_flag::kOpaque | ray_flag::kNoOpaque | ray_flag::kCullsBack |
                               ray_flag::kCullsFront | ray_flag::kCullsNoOpaque;
-  if ((flags.bits & ~kKnown) == 0) return;
   if ((flags.bits & ray_flag::kCullsOpaque) != 0)
     fail("gl_RayFlagsCullOpaqueEXT is not supported: decide in an any-hit shader");
-  fail(fmt::format("ray flags {:#x} are not those of a ray: use gl_RayFlags...EXT", flags.bits));
+  if ((flags.bits & ~kKnown) != 0)
+    fail(fmt::format("ray flags {:#x} are not those of a ray: use gl_RayFlags...EXT", flags.bits));
+  return flags.bits;
 }
 
+/// Words of the ray but payload and flags; gives its tmin.
+Scalar Lowering::put_ray(const Line& line) {
+  Value origin = get(line.operands.at(6));
+  const Value direction = get(line.operands.at(8));
+  const Scalar least = get_scalar(line.operands.at(7));
+  Scalar most = get_scalar(line.operands.at(9));
+  if (!least.is_constant() || (least.bits & 0x7fffffffu) != 0) {
+    // The ray begins where it may first hit.
+    for (size_t i = 0; i < 3; ++i) origin[i] = multiply_add(direction[i], least, origin[i]);
+    most = binary(Opcode::Fsub, most, least);
+  }
+  for (int i = 0; i < 3; ++i) put_word(word::kOrigin + i, origin[static_cast<size_t>(i)]);
+  for (int i = 0; i < 3; ++i) put_word(word::kDirection + i, direction[static_cast<size_t>(i)]);
+  put_word(word::kLimit, most);
+  put_word(word::kPixel, *pixel_);
+  return least;
+}
+
+/// Of a shader that ends with its traces: find_waits() has seen that it does.
 void Lowering::trace(const Line& line) {
-  if (kernel_ == RayKernel::Shade) fail("a miss shader traces a ray: trace it in the closest-hit shader");
-  if (loops_ > 0)
-    fail("traceRayEXT is called in a loop: a thread casts one ray on and one shadow ray, outside of loops");
-  const Scalar flags = get_scalar(line.operands.at(1));
-  check_flags(flags);
-  const bool shadow = (flags.bits & kShadowRay) == kShadowRay;
-  if (!shadow && (flags.bits & kShadowRay) != 0) {
-    fail(
-        "gl_RayFlagsTerminateOnFirstHitEXT and gl_RayFlagsSkipClosestHitShaderEXT go together here: a ray looks for "
-        "the "
-        "closest hit, or asks whether it meets anything");
-  }
-  int& count = shadow ? way_.cast.shadow : way_.cast.normal;
-  if (shadow && kernel_ == RayKernel::CastEye)
-    fail("a ray generation shader traces a shadow ray: trace it in the closest-hit shader");
-  if (++count > 1) {
-    fail(fmt::format("a thread traces a second {}: it may cast one that looks for the closest hit and one shadow ray",
-                     shadow ? "shadow ray" : "ray that looks for the closest hit"));
-  }
-  const uint32_t payload = line.operands.at(10);
-  const bool leaves = shadow || kernel_ != RayKernel::CastSecondaryDirect;
-  if (leaves) {
-    Value origin = get(line.operands.at(6));
-    const Value direction = get(line.operands.at(8));
-    const Scalar least = get_scalar(line.operands.at(7));
-    Scalar most = get_scalar(line.operands.at(9));
-    if (!least.is_constant() || (least.bits & 0x7fffffffu) != 0) {
-      // The ray begins where it may first hit.
-      for (size_t i = 0; i < 3; ++i) origin[i] = multiply_add(direction[i], least, origin[i]);
-      most = binary(Opcode::Fsub, most, least);
-    }
-    for (int i = 0; i < 3; ++i) put_word(word::kOrigin + i, origin[static_cast<size_t>(i)]);
-    for (int i = 0; i < 3; ++i) put_word(word::kDirection + i, direction[static_cast<size_t>(i)]);
-    put_word(word::kLimit, most);
-    put_word(word::kPixel, *pixel_);
-    put_payload(payload, shadow);
-    k_.ray_out();
-  }
-  way_.given_away.insert(payload);
+  const bool shadow = (ray_flags(line) & kShadowRay) == kShadowRay;
+  if (!shadow && kernel_ == RayKernel::CastSecondaryDirect) return;
+  put_ray(line);
+  put_payload(payload_of(line), shadow);
+  k_.ray_out();
 }
 
 void Lowering::put_payload(uint32_t id, bool shadow) {

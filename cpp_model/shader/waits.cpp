@@ -280,7 +280,7 @@ class Steady {
 /// Whether a shader that ends with its traces could not do as much.
 bool must_wait(const Module& module, Liveness& liveness, const std::vector<TraceSite>& sites) {
   const bool casts_one = module.stage() == spv::ExecutionModel::RayGenerationKHR;
-  bool needed = module.stage() == spv::ExecutionModel::MissKHR;
+  bool needed = module.stage() == spv::ExecutionModel::MissKHR;  // that traces
   liveness.at_traces(
       false, [&](const Line& line, const std::set<uint32_t>& live) { needed |= live.count(payload_of(line)) != 0; });
   // A thread may send one ray of each kind.
@@ -289,6 +289,7 @@ bool must_wait(const Module& module, Liveness& liveness, const std::vector<Trace
     needed |= casts_one && is_shadow(module, *one.line);
     const uint32_t flags = module.constant(one.line->operands.at(1)).value_or(0);
     needed |= (flags & (ray_flag::kCullsBack | ray_flag::kCullsFront)) != 0;
+    needed |= (flags & kShadowRay) != 0 && (flags & kShadowRay) != kShadowRay;
     for (const TraceSite& other : sites) {
       const bool follows = next.count(other.block) != 0 || (one.block == other.block && one.number < other.number);
       needed |= follows && (casts_one || is_shadow(module, *one.line) == is_shadow(module, *other.line));

@@ -356,8 +356,7 @@ class Synthesis(SmallBlocks):
         for slacks, best, maps in (([-0.9, -0.2, -0.5], {"a": 2}, 4), ([-0.9, -0.9, -0.4], {"a": 3}, 3),
                                    ([-2.0, -1.5, -1.2], {}, 4)):  # fmt: skip
             design = flow.Design(flow.Options(rounds=3), None, {}, "")
-            design.kinds = {"a": mock.Mock()}
-            design.kinds["a"].name = "a"
+            design.kinds = {"a": elaborate.Kind("a", "round_robin", {}, {}, {})}
             with mock.patch.multiple(flow, map_design=mock.DEFAULT, time_design=mock.DEFAULT,
                                      on_failing_paths=mock.DEFAULT, next_effort=mock.DEFAULT) as done:  # fmt: skip
                 done["next_effort"].return_value = {"a"}
