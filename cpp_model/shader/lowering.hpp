@@ -21,25 +21,36 @@
 
 namespace raypool::shader {
 
+/// Shaders that executeCallableEXT counts.
+using Callables = std::vector<const Module*>;
+
 /// Which of the ray kernels a shader becomes. Throws InputError with file and line for what cannot be done.
 /// `layout`: of the intersections that it imports.
 kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
-                       const RecordLayout& layout = {});
+                       const RecordLayout& layout = {}, const Callables* callables = nullptr);
 
 /// Shaders that wait for their rays: module and sites of each.
 struct WaitingShader {
   const Module& module;
   const Waits& waits;
 };
-/// Decides of hits of rays to these closest-hit shaders whether they count.
+/// With the hit groups that it belongs to.
+struct ClosestHitShader {
+  WaitingShader shader;
+  std::vector<uint32_t> groups;
+};
+/// Decides of hits of rays to these hit groups whether they count.
 struct AnyHitShader {
   const Module& module;
-  std::vector<uint32_t> closest_hits;
+  std::vector<uint32_t> groups;
 };
 struct WaitingShaders {
   WaitingShader ray_generation;
-  std::vector<WaitingShader> misses, closest_hits;  ///< by the index of a traceRayEXT
+  std::vector<WaitingShader> misses;  ///< by the index of a traceRayEXT
+  std::vector<ClosestHitShader> closest_hits;
   std::vector<AnyHitShader> any_hits;
+  Callables callables;
+  uint32_t groups = 1;
 };
 
 /// CastEye or CastSecondary of shaders that wait: the first begins paths, the second goes on with them.
@@ -70,14 +81,18 @@ struct Path {
 
 /// A kernel that is being recorded, of one shader or several.
 struct Recording {
-  Recording(RayKernel kernel, const KernelTarget& target, const RecordLayout& layout)
-      : recorder(std::string(kRayKernelNames[kernel]), target.fma), k(recorder, target.culling, layout) {}
+  Recording(RayKernel kernel, const KernelTarget& target, const RecordLayout& layout, const Callables* all_callables)
+      : recorder(std::string(kRayKernelNames[kernel]), target.fma),
+        k(recorder, target.culling, layout),
+        callables(all_callables) {}
 
   kernel::Recorder recorder;
   kernel::RecordedKernel k;
   std::optional<Scalar> pixel, flags;  ///< words of the ray that has come
   std::optional<int> saved;            ///< register: where the thread's own memory lies, bytes
   std::optional<Path> path;            ///< of a kernel of shaders that wait
+  const Callables* callables;          ///< null: none
+  std::vector<const Module*> called;   ///< those that are being recorded, the first of which called the others
 };
 
 class Lowering {
@@ -94,7 +109,8 @@ class Lowering {
   void run_any_hit(const AnyHitShader& shader);
   void pass_on();
   void give_back_unread();
-  Scalar called(bool met, uint32_t index);
+  Scalar goes_to_miss(uint32_t index);
+  Scalar called_by_hit(const std::vector<uint32_t>& groups);
   /// Lanes of `starts` begin the shader, others go on behind its sites. `first_word`: of the path's record, for what
   /// they hold.
   void run_waiting(const Waits& waits, const Scalar& starts, uint32_t first_word);
@@ -172,6 +188,7 @@ class Lowering {
   void wait(const Line& line);
 
   // lowering_paths.cpp: what rays and records take along
+  bool goes_to_no_closest_hit(const Line& line);
   void send(const Line& line, const TraceSite& site);
   void go_on(const TraceSite& site);
   void take_payload_back(const Line& line);
@@ -200,7 +217,7 @@ class Lowering {
   void for_each_payload(const Put& put);
   Scalar plus(const Scalar& a, const Scalar& b);
   Scalar has_flag(uint32_t flag);
-  Scalar goes_to(bool met, uint32_t index);
+  Scalar goes_to_groups(const std::vector<uint32_t>& groups);
   void declare_stored(const Module& shader);
   void store_later(const Value& place, const Value& colour);
 
@@ -242,6 +259,7 @@ class Lowering {
 
   // lowering_operations.cpp: what lines compute
   void operation(const Line& line);
+  bool wide_integers(const Line& line);
   bool arithmetic(const Line& line);
   bool conversion(const Line& line);
   /// The instruction's value, scalar by scalar of its one or two operands.
@@ -299,7 +317,13 @@ class Lowering {
   void fetch(const Line& line);
   void query_size(const Line& line);
 
+  // lowering_callables.cpp
+  void execute_callable(const Line& line);
+  /// Of a callable shader: its data, before and behind it.
+  Value run_callable(const Value& data);
+
   // lowering_rays.cpp: what comes and leaves
+  Scalar geometry();
   Value built_in(uint32_t number, uint32_t type);
   Value hit_attribute(uint32_t type);
   void load_payload(uint32_t id, const Variable& variable);
@@ -321,6 +345,7 @@ class Lowering {
   std::optional<Scalar>&pixel_, &flags_;  // words of the ray that has come
   std::optional<int>& saved_;
   std::optional<Path>& path_;
+  Recording& recording_;
   kernel::Location where_;
 
   std::unordered_map<uint32_t, Value> values_;
@@ -353,6 +378,7 @@ class Lowering {
   uint32_t first_word_ = 0;       // of the path's record, for what is held
   std::optional<Scalar> return_;  // register: the site that called the shader
   Value passed_;                  // registers: what has come as a payload, of a shader that has none
+  Value callable_data_;           // of a callable shader, as it comes
 };
 
 }  // namespace raypool::shader

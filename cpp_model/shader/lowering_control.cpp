@@ -409,15 +409,18 @@ void Lowering::selection(const Block& block, uint32_t stop) {
   };
   if (is_idle(yes) && is_idle(no)) {
     after = before;
+  } else if (chosen.is_constant()) {
+    // Nobody goes to the other side, which may have what is not supported.
+    if (chosen.bits != 0)
+      arm(yes, then_flow, from_then);
+    else
+      arm(no, else_flow, from_else);
   } else if (is_idle(yes)) {
     under(inverse(chosen), [&] { arm(no, else_flow, from_else); });
     arm(yes, {{}, true}, from_then);
   } else if (is_idle(no)) {
     under(chosen, [&] { arm(yes, then_flow, from_then); });
     arm(no, {{}, true}, from_else);
-  } else if (chosen.is_constant()) {
-    under(chosen, [&] { arm(yes, then_flow, from_then); });
-    under(inverse(chosen), [&] { arm(no, else_flow, from_else); });
   } else {
     recorder_.begin_if(condition(chosen));
     arm(yes, then_flow, from_then);
@@ -440,6 +443,7 @@ void Lowering::unmerged_branch(const Block& block, uint32_t stop) {
   const Way before = way_;
   std::optional<Way> after;
   const auto side = [&](const Scalar& which, uint32_t label) {
+    if (which == Scalar::constant(0)) return;
     const bool idle = (label == stop || is_open(label)) && reach_.count(label) == 0 && !has_phis(label);
     way_ = before;
     if (!idle) under(which, [&] { go(block.label, label, stop); });

@@ -26,6 +26,7 @@ void Lowering::begin_variables() {
       if (line.op == spv::Op::OpAccessChain || line.op == spv::Op::OpInBoundsAccessChain)
         roots[line.id] = root(line.operands.at(0));
       if (line.op == spv::Op::OpStore) written_.insert(root(line.operands.at(0)));
+      if (line.op == spv::Op::OpExecuteCallableKHR) written_.insert(line.operands.at(1));
       // modf() and frexp() write their second result.
       if (line.op == spv::Op::OpExtInst && type_of(line.operands.back()) != 0 &&
           module_.type(type_of(line.operands.back())).kind == TypeKind::Pointer)
@@ -45,6 +46,7 @@ void Lowering::begin_variables() {
     switch (variable.storage) {
       case spv::StorageClass::Private:
       case spv::StorageClass::RayPayloadKHR:
+      case spv::StorageClass::CallableDataKHR:
         declare_all(id, variable.type, variable.initial);
         break;
       case spv::StorageClass::Input:
@@ -56,11 +58,13 @@ void Lowering::begin_variables() {
       case spv::StorageClass::IncomingRayPayloadKHR:
         load_payload(id, variable);
         break;
-      case spv::StorageClass::CallableDataKHR:
-      case spv::StorageClass::IncomingCallableDataKHR:
-        fail("callable shaders are not supported: use a function");
-      case spv::StorageClass::ShaderRecordBufferKHR:
-        fail("shader records are not supported, as all triangles share a closest-hit shader: use a buffer");
+      case spv::StorageClass::IncomingCallableDataKHR: {
+        // One that takes more than it is given reads nothing defined.
+        Value data = callable_data_;
+        data.resize(module_.scalars(pointer.element));
+        keep(id, pointer.element, data);
+        break;
+      }
       default:
         break;
     }
@@ -119,6 +123,13 @@ Pointer Lowering::global(uint32_t id, const Variable& variable) {
       pointer.to = Pointer::To::Words;
       pointer.words = &resources_.push_constants;
       return pointer;
+    case spv::StorageClass::ShaderRecordBufferKHR: {
+      const auto record = resources_.records.find({record_stage(module_.stage()), module_.number()});
+      if (record == resources_.records.end()) missing("shader record");
+      pointer.to = Pointer::To::Words;
+      pointer.words = &record->second;
+      return pointer;
+    }
     case spv::StorageClass::UniformConstant: {
       const Type& its = module_.type(pointer.type);
       uint32_t element = pointer.type;
@@ -267,6 +278,11 @@ void Lowering::for_each_scalar(uint32_t type, uint32_t offset, uint32_t componen
   switch (its.kind) {
     case TypeKind::Int:
     case TypeKind::Float:
+      if (module_.is_wide(type)) {
+        leaf(offset);
+        leaf(offset + 4);
+        return;
+      }
       if (its.bits != 32) fail("memory holds numbers of 32 bits: pack smaller ones into a uint");
       leaf(offset);
       return;
@@ -422,7 +438,7 @@ void Lowering::store_to(const Pointer& pointer, const Value& value) {
       return;
     }
     case Pointer::To::Words:
-      fail("a uniform block cannot be written: use a buffer");
+      fail("a uniform block or shader record cannot be written: use a buffer");
     default:
       fail("this cannot be written as a value");
   }

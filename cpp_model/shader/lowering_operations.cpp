@@ -21,6 +21,8 @@ void Lowering::operation(const Line& line) {
       return store(line);
     case spv::Op::OpTraceRayKHR:
       return trace(line);
+    case spv::Op::OpExecuteCallableKHR:
+      return execute_callable(line);
     case spv::Op::OpImageWrite:
       return write_picture(line);
     case spv::Op::OpImageSampleExplicitLod:
@@ -52,16 +54,14 @@ void Lowering::operation(const Line& line) {
     default:
       break;
   }
-  if (arithmetic(line) || conversion(line) || comparison(line) || logic(line) || composite(line) || matrix(line))
+  if (wide_integers(line) || arithmetic(line) || conversion(line) || comparison(line) || logic(line) ||
+      composite(line) || matrix(line))
     return;
   switch (line.op) {
     case spv::Op::OpImageRead:
       fail("imageLoad is not supported, as other kernels add to the picture meanwhile: carry the value in the payload");
     case spv::Op::OpReportIntersectionKHR:
-    case spv::Op::OpExecuteCallableKHR:
-      fail(
-          "intersection and callable shaders are not supported: triangles are tested by the traverser, and a function "
-          "takes the place of a callable shader");
+      fail("intersection shaders are not supported: triangles are tested by the traverser");
     case spv::Op::OpControlBarrier:
     case spv::Op::OpMemoryBarrier:
       fail("barriers are not supported: threads share nothing");
@@ -263,6 +263,107 @@ bool Lowering::arithmetic(const Line& line) {
     default:
       return false;
   }
+}
+
+/// Integers of 64 bits: addresses of buffers, of which the machine uses the low word, and what is computed of them.
+bool Lowering::wide_integers(const Line& line) {
+  const auto is_pointer = [&](uint32_t type) { return type != 0 && module_.type(type).kind == TypeKind::Pointer; };
+  const auto is_wide = [&](uint32_t type) {
+    if (type == 0) return false;
+    return module_.is_wide(module_.type(type).kind == TypeKind::Vector ? module_.type(type).element : type);
+  };
+  if (line.operands.empty()) return false;
+  const uint32_t given = type_of(line.operands[0]);
+  const bool gives = is_wide(line.type), takes = is_wide(given);
+  if (line.op == spv::Op::OpConvertPtrToU || (line.op == spv::Op::OpBitcast && is_pointer(given))) {
+    const auto [base, offset] = address(pointer_of(line.operands[0]));
+    Value value(module_.scalars(line.type), Scalar::constant(0));
+    value.at(0) = binary(Opcode::Iadd, base, Scalar::constant(offset));
+    set(line, value);
+    return true;
+  }
+  if ((!gives && !takes) || is_pointer(line.type)) return false;
+  const bool is_one = module_.type(gives ? line.type : given).kind == TypeKind::Int;
+  const auto operand = [&](size_t i) { return get(line.operands.at(i)); };
+  switch (line.op) {
+    case spv::Op::OpBitwiseAnd:
+    case spv::Op::OpBitwiseOr:
+    case spv::Op::OpBitwiseXor:
+    case spv::Op::OpNot:
+    case spv::Op::OpBitcast:
+    case spv::Op::OpSelect:
+    case spv::Op::OpCopyObject:
+    case spv::Op::OpCompositeConstruct:
+    case spv::Op::OpUndef:
+      return false;  // scalar by scalar
+    case spv::Op::OpIAdd:
+    case spv::Op::OpISub: {
+      if (!is_one) break;
+      const Value a = operand(0), b = operand(1);
+      const bool adds = line.op == spv::Op::OpIAdd;
+      const Opcode opcode = adds ? Opcode::Iadd : Opcode::Isub;
+      const Scalar low = binary(opcode, a.at(0), b.at(0));
+      const Scalar over = adds ? compare(Opcode::Ult, low, a[0]) : compare(Opcode::Ult, a[0], b[0]);
+      const Scalar carry = select(over, Scalar::constant(1), Scalar::constant(0));
+      set(line, {low, binary(opcode, binary(opcode, a.at(1), b.at(1)), carry)});
+      return true;
+    }
+    case spv::Op::OpIMul: {
+      if (!is_one) break;
+      const Value a = operand(0), b = operand(1);
+      const Scalar cross =
+          binary(Opcode::Iadd, binary(Opcode::Imul, a.at(1), b.at(0)), binary(Opcode::Imul, a.at(0), b.at(1)));
+      set(line, {binary(Opcode::Imul, a[0], b[0]), binary(Opcode::Iadd, upper_product(a[0], b[0], false), cross)});
+      return true;
+    }
+    case spv::Op::OpUConvert:
+    case spv::Op::OpSConvert: {
+      if (!is_one) break;
+      const Scalar low = operand(0).at(0);
+      if (!gives) {
+        set(line, {narrowed_result(line, low)});
+      } else if (line.op == spv::Op::OpUConvert) {
+        set(line, {low, Scalar::constant(0)});
+      } else {
+        set(line, {low, immediate(Opcode::Sar, low, 31)});
+      }
+      return true;
+    }
+    case spv::Op::OpShiftLeftLogical:
+    case spv::Op::OpShiftRightLogical: {
+      const Scalar by = operand(1).at(0);
+      if (!is_one || !by.is_constant() || by.bits >= 64) break;
+      const bool is_left = line.op == spv::Op::OpShiftLeftLogical;
+      const Opcode moves = is_left ? Opcode::Shl : Opcode::Shr, fills = is_left ? Opcode::Shr : Opcode::Shl;
+      const Value a = operand(0);
+      const size_t from = is_left ? 0 : 1, to = 1 - from;  // bits go from one word to the other
+      Value value(2, Scalar::constant(0));
+      if (by.bits >= 32) {
+        value[to] = immediate(moves, a.at(from), by.bits - 32);
+      } else {
+        value[from] = immediate(moves, a.at(from), by.bits);
+        value[to] = immediate(moves, a.at(to), by.bits);
+        if (by.bits != 0) value[to] = binary(Opcode::Or, value[to], immediate(fills, a[from], 32 - by.bits));
+      }
+      set(line, value);
+      return true;
+    }
+    case spv::Op::OpIEqual:
+    case spv::Op::OpINotEqual: {
+      if (!is_one) break;
+      const Value a = operand(0), b = operand(1);
+      const Scalar equal = both(compare(Opcode::Ieq, a.at(0), b.at(0)), compare(Opcode::Ieq, a.at(1), b.at(1)));
+      set(line, {line.op == spv::Op::OpIEqual ? equal : inverse(equal)});
+      return true;
+    }
+    default:
+      // Parts of something that has some.
+      if (!takes || line.op == spv::Op::OpCompositeExtract) return false;
+      break;
+  }
+  fail(
+      "of 64-bit integers, which hold addresses, this is not supported: add, subtract, multiply, compare for "
+      "equality, shift by a constant or convert them, one at a time, or compute in uint");
 }
 
 /// Bits 63:32 of a product, from those of its 16-bit halves.

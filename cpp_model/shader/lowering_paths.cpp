@@ -26,7 +26,7 @@ void for_each_site(const WaitingShaders& shaders, const Visit& visit) {
     for (const TraceSite& site : shader.waits.sites) visit(shader.module, site);
   };
   look(shaders.ray_generation);
-  for (const WaitingShader& shader : shaders.closest_hits) look(shader);
+  for (const ClosestHitShader& hit : shaders.closest_hits) look(hit.shader);
 }
 
 /// Whether rays may go on behind hits that do not count.
@@ -79,6 +79,17 @@ uint32_t words_of_hit(const WaitingShaders& shaders, const WaitingShader& shader
   return most_held_words(shader.module, shader.waits) + 1 + passed;
 }
 
+std::vector<uint32_t> groups_without_closest_hit(const WaitingShaders& shaders) {
+  std::vector<uint32_t> without;
+  for (uint32_t group = 0; group < shaders.groups; ++group) {
+    const auto has_it = [&](const ClosestHitShader& one) {
+      return std::find(one.groups.begin(), one.groups.end(), group) != one.groups.end();
+    };
+    if (std::none_of(shaders.closest_hits.begin(), shaders.closest_hits.end(), has_it)) without.push_back(group);
+  }
+  return without;
+}
+
 /// Words of the ray that hold scalars 3 .. 9 of what a shader gives back: nobody needs its origin and direction then.
 bool goes_back_in_word(uint32_t scalar) { return scalar < kPayloadInRay + word::kPixel; }
 int word_back(uint32_t scalar) {
@@ -89,14 +100,15 @@ int word_back(uint32_t scalar) {
 
 uint32_t path_words(const WaitingShaders& shaders) {
   uint32_t of_hits = 0;
-  for (const WaitingShader& shader : shaders.closest_hits) of_hits = std::max(of_hits, words_of_hit(shaders, shader));
+  for (const ClosestHitShader& hit : shaders.closest_hits)
+    of_hits = std::max(of_hits, words_of_hit(shaders, hit.shader));
   const WaitingShader& first = shaders.ray_generation;
   return first_held_word(shaders) + most_held_words(first.module, first.waits) + of_hits;
 }
 
 kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& resources, RayKernel kernel,
                                const KernelTarget& target, const RecordLayout& layout) {
-  Recording recording(kernel, target, layout);
+  Recording recording(kernel, target, layout, &shaders.callables);
   const bool comes_back = kernel != RayKernel::CastEye;
   const WaitingShader& first = shaders.ray_generation;
   Lowering begin(first.module, resources, RayKernel::CastEye, recording);
@@ -114,11 +126,11 @@ kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& r
     begin.give_back_unread();
     for (uint32_t i = 0; i < shaders.misses.size(); ++i) {
       Lowering miss(shaders.misses[i].module, resources, RayKernel::Shade, recording);
-      miss.run_waiting(shaders.misses[i].waits, miss.called(false, i), of_hits);
+      miss.run_waiting(shaders.misses[i].waits, miss.goes_to_miss(i), of_hits);
     }
-    for (uint32_t i = 0; i < shaders.closest_hits.size(); ++i) {
-      Lowering hit(shaders.closest_hits[i].module, resources, RayKernel::CastSecondary, recording);
-      hit.run_waiting(shaders.closest_hits[i].waits, hit.called(true, i), of_hits);
+    for (const auto& [shader, groups] : shaders.closest_hits) {
+      Lowering hit(shader.module, resources, RayKernel::CastSecondary, recording);
+      hit.run_waiting(shader.waits, hit.called_by_hit(groups), of_hits);
     }
   }
   begin.run_waiting(first.waits, inside, of_begin);
@@ -147,7 +159,7 @@ Scalar Lowering::begin_paths() {
   declare_stored(path_->shaders.ray_generation.module);
   if (!path_->comes_back) return inside;
   for (const WaitingShader& shader : path_->shaders.misses) declare_stored(shader.module);
-  for (const WaitingShader& shader : path_->shaders.closest_hits) declare_stored(shader.module);
+  for (const ClosestHitShader& hit : path_->shaders.closest_hits) declare_stored(hit.shader.module);
   for (const AnyHitShader& shader : path_->shaders.any_hits) declare_stored(shader.module);
   path_->site = copy(immediate(Opcode::And, immediate(Opcode::Shr, *flags_, kSiteShift), kSiteMask));
   return inside;
@@ -170,24 +182,33 @@ Scalar Lowering::has_flag(uint32_t flag) {
   return compare(Opcode::Ine, immediate(Opcode::And, *flags_, flag), Scalar::constant(0));
 }
 
-/// Rays that were sent to the closest-hit shader of this index and have met something, or to the miss shader and have
-/// not.
-Scalar Lowering::goes_to(bool met, uint32_t index) {
-  const Scalar hit = has_flag(kMetFlag);
-  const size_t shaders = met ? path_->shaders.closest_hits.size() : path_->shaders.misses.size();
-  Scalar chosen = Scalar::constant(1);
-  if (shaders > 1) {
-    const Scalar its =
-        immediate(Opcode::And, immediate(Opcode::Shr, *flags_, met ? kHitShift : kMissShift), kIndexMask);
-    chosen = compare(Opcode::Ieq, its, Scalar::constant(index));
-  }
-  return both(chosen, met ? hit : inverse(hit));
+/// Rays that were sent to the miss shader of this index, and have met nothing.
+Scalar Lowering::goes_to_miss(uint32_t index) {
+  const Scalar missed = inverse(has_flag(kMetFlag));
+  if (path_->shaders.misses.size() == 1) return missed;
+  const Scalar its = immediate(Opcode::And, immediate(Opcode::Shr, *flags_, kMissShift), kIndexMask);
+  return both(compare(Opcode::Ieq, its, Scalar::constant(index)), missed);
 }
 
-Scalar Lowering::called(bool met, uint32_t index) {
-  const Scalar its = goes_to(met, index);
-  if (!met) return its;
-  const Scalar called = both(its, inverse(has_flag(kNoClosestHit)));
+/// Rays that have met something of one of these hit groups: as Vulkan counts, that of the trace, and as many further as
+/// the geometry's number times the trace's stride.
+Scalar Lowering::goes_to_groups(const std::vector<uint32_t>& groups) {
+  const Scalar met = has_flag(kMetFlag);
+  if (groups.size() == path_->shaders.groups) return met;
+  Scalar its = immediate(Opcode::And, immediate(Opcode::Shr, *flags_, kHitShift), kIndexMask);
+  const Scalar stride = of_site([](const Module& module, const TraceSite& site) {
+    return module.constant(site.line->operands.at(4)).value_or(0);
+  });
+  const Scalar number = geometry();
+  if (!(number == Scalar::constant(0)) && !(stride == Scalar::constant(0)))
+    its = binary(Opcode::Iadd, its, binary(Opcode::Imul, stride, number));
+  Scalar any = Scalar::constant(0);
+  for (const uint32_t group : groups) any = either(any, compare(Opcode::Ieq, its, Scalar::constant(group)));
+  return both(any, met);
+}
+
+Scalar Lowering::called_by_hit(const std::vector<uint32_t>& groups) {
+  const Scalar called = both(goes_to_groups(groups), inverse(has_flag(kNoClosestHit)));
   return path_->ignored ? both(called, Scalar::in_predicate(*path_->ignored, true)) : called;
 }
 
@@ -213,8 +234,7 @@ void Lowering::ignore_sides() {
 }
 
 void Lowering::run_any_hit(const AnyHitShader& shader) {
-  Scalar its = Scalar::constant(0);
-  for (const uint32_t index : shader.closest_hits) its = either(its, goes_to(true, index));
+  const Scalar its = goes_to_groups(shader.groups);
   const Scalar asks = has_flag(kAsksAnyHit);
   const Scalar counts = Scalar::in_predicate(*path_->ignored, true);
   const Waits none;
@@ -296,7 +316,9 @@ void Lowering::store_later(const Value& place, const Value& colour) {
                   compare(Opcode::Ult, place[1], Scalar::constant(resources_.height)));
     pixel = binary(Opcode::Or, place[0], immediate(Opcode::Shl, place[1], 16));
   }
-  std::vector<Stored>& all = path_->stored.at(module_.stage());
+  const auto stored = path_->stored.find(module_.stage());
+  if (stored == path_->stored.end()) fail("a callable shader writes to the picture: give the colour to its caller");
+  std::vector<Stored>& all = stored->second;
   // Each adds to the picture on its own: what is below zero adds nothing.
   Stored& its = all.at(stores_++);
   under(inside, [&] {
@@ -364,6 +386,8 @@ void Lowering::give_back_unread() {
   if (most <= kPayloadInRay) return;
   const Scalar hit = has_flag(kMetFlag);
   Scalar nobody = both(hit, has_flag(kNoClosestHit));
+  const std::vector<uint32_t> empty = groups_without_closest_hit(path_->shaders);
+  if (!empty.empty()) nobody = either(nobody, goes_to_groups(empty));
   if (path_->shaders.misses.empty()) nobody = either(nobody, inverse(hit));
   if (path_->ignored) nobody = both(nobody, Scalar::in_predicate(*path_->ignored, true));
   under(nobody, [&] {
@@ -467,9 +491,17 @@ void Lowering::flush_products() {
   while (!products_.empty()) get(products_.begin()->first);
 }
 
+/// Its hit group is known, and has no closest-hit shader.
+bool Lowering::goes_to_no_closest_hit(const Line& line) {
+  const Scalar group = get_scalar(line.operands.at(3)), stride = get_scalar(line.operands.at(4));
+  const bool is_known = group.is_constant() && (!resources_.geometries || stride == Scalar::constant(0));
+  const std::vector<uint32_t> without = groups_without_closest_hit(path_->shaders);
+  return is_known && std::find(without.begin(), without.end(), group.bits) != without.end();
+}
+
 void Lowering::send(const Line& line, const TraceSite& site) {
   const uint32_t flags = ray_flags(line);
-  const bool skips = (flags & ray_flag::kSkipsClosestHit) != 0;
+  const bool skips = (flags & ray_flag::kSkipsClosestHit) != 0 || goes_to_no_closest_hit(line);
   const bool asks = !path_->shaders.any_hits.empty() && (flags & ray_flag::kOpaque) == 0;
   const bool all_count = !asks && (flags & (ray_flag::kCullsBack | ray_flag::kCullsFront)) == 0;
   if (kernel_ == RayKernel::Shade)
@@ -482,15 +514,14 @@ void Lowering::send(const Line& line, const TraceSite& site) {
   const auto index = [&](uint32_t operand, const char* what, size_t count) {
     const Scalar its = get_scalar(line.operands.at(operand));
     if (its.is_constant() && its.bits >= count)
-      fail(fmt::format("traceRayEXT names {} shader {}, and the set has {}", what, its.bits, count));
+      fail(fmt::format("traceRayEXT names {} {}, and the set has {}", what, its.bits, count));
     return immediate(Opcode::And, its, kIndexMask);
   };
   const Path& path = *path_;
   const size_t misses = std::max(size_t{1}, path.shaders.misses.size());
-  const Scalar miss = immediate(Opcode::Shl, index(5, "miss", misses), kMissShift);
+  const Scalar miss = immediate(Opcode::Shl, index(5, "miss shader", misses), kMissShift);
   Scalar hit = Scalar::constant(0);  // of a ray that nobody's hit group looks at
-  if (asks || !skips)
-    hit = immediate(Opcode::Shl, index(3, "closest-hit", path.shaders.closest_hits.size()), kHitShift);
+  if (asks || !skips) hit = immediate(Opcode::Shl, index(3, "hit group", path.shaders.groups), kHitShift);
   // Any hit will do where every hit counts and no shader looks at it.
   const uint32_t bits = (path.comes_back ? 2 : 1) | site.number << kSiteShift | kReturnsFlag |
                         (skips ? kNoClosestHit : 0) | (asks ? kAsksAnyHit : 0) | (skips && all_count ? kFirstFlag : 0);

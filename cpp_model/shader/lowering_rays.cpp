@@ -10,7 +10,6 @@ namespace {
 
 constexpr uint32_t kTagShift = 8, kTagMask = 0xffff;
 constexpr int kPayloadWords = 3;
-constexpr int kSlots = 64;  // a kernel that spills more is better divided
 
 std::string stage_name(RayKernel kernel) {
   switch (kernel) {
@@ -26,8 +25,8 @@ std::string stage_name(RayKernel kernel) {
 }  // namespace
 
 kernel::Function lower(const Module& module, const Resources& resources, RayKernel kernel, const KernelTarget& target,
-                       const RecordLayout& layout) {
-  Recording recording(kernel, target, layout);
+                       const RecordLayout& layout, const Callables* callables) {
+  Recording recording(kernel, target, layout, callables);
   return Lowering(module, resources, kernel, recording).run();
 }
 
@@ -41,6 +40,7 @@ Lowering::Lowering(const Module& module, const Resources& resources, RayKernel k
       flags_(recording.flags),
       saved_(recording.saved),
       path_(recording.path),
+      recording_(recording),
       where_{lasting(module.name()), 1} {
   recorder_.set_place(where_);
 }
@@ -51,6 +51,8 @@ void Lowering::constants() {
     const auto bits = module_.constant(line.id);
     if (bits) {
       set(line, {Scalar::constant(*bits)});
+    } else if (module_.is_wide(line.type) && line.operands.size() == 2) {
+      set(line, {Scalar::constant(line.operands[0]), Scalar::constant(line.operands[1])});
     } else if (line.op == spv::Op::OpConstantNull) {
       set(line, Value(module_.scalars(line.type), Scalar::constant(0)));
     } else if (line.op == spv::Op::OpUndef) {
@@ -108,7 +110,7 @@ Scalar Lowering::place_pixel() {
 /// Where the thread's own memory lies. Miss shaders have none: two rays of a pixel may come to them at once.
 void Lowering::place_saved(const Scalar& depth, const Scalar& inside) {
   constexpr uint64_t kMost = uint64_t{1} << 30;
-  if (resources_.saved == 0 || resources_.saved_stride() * kSlots > UINT32_MAX - uint64_t{resources_.spilled()} ||
+  if (resources_.saved == 0 || resources_.saved_stride() * kSpillSlots > UINT32_MAX - uint64_t{resources_.spilled()} ||
       resources_.saved_stride() > kMost) {
     return;
   }
@@ -122,7 +124,8 @@ kernel::Function Lowering::finished() {
   kernel::Function function = recorder_.finish();
   function.reuses_values = true;
   if (saved_)
-    function.spill_memory = {*saved_, resources_.spilled(), static_cast<uint32_t>(resources_.saved_stride()), kSlots};
+    function.spill_memory = {*saved_, resources_.spilled(), static_cast<uint32_t>(resources_.saved_stride()),
+                             kSpillSlots};
   return function;
 }
 
@@ -162,8 +165,10 @@ Value Lowering::built_in(uint32_t number, uint32_t type) {
       return word_of_ray(word::kTriangle);
     case spv::BuiltIn::InstanceId:
     case spv::BuiltIn::InstanceCustomIndexKHR:
+      return {Scalar::constant(0)};  // the scene is one instance
     case spv::BuiltIn::RayGeometryIndexKHR:
-      return {Scalar::constant(0)};  // the scene is one mesh
+      only(has_hit, "gl_GeometryIndexEXT");
+      return {geometry()};
     case spv::BuiltIn::HitKindKHR: {
       only(has_hit, "gl_HitKindEXT");
       const Scalar back =
@@ -183,6 +188,15 @@ Value Lowering::built_in(uint32_t number, uint32_t type) {
     default:
       fail(fmt::format("built-in variable {} is not supported", number));
   }
+}
+
+/// gl_GeometryIndexEXT: the number of the material, where each is a geometry.
+Scalar Lowering::geometry() {
+  if (!resources_.geometries) return Scalar::constant(0);
+  constexpr uint32_t kLog2OfRecord = 5;
+  static_assert(1u << kLog2OfRecord == kMaterialBytes);
+  const Scalar place = of(k_.int_word(word::kMaterial));
+  return immediate(Opcode::Shr, immediate(Opcode::Isub, place, *resources_.geometries), kLog2OfRecord);
 }
 
 /// vec2 barycentrics, and of a larger struct: vec3 normal, uint material, uint depth.
@@ -234,7 +248,7 @@ std::vector<std::pair<int, bool>> Lowering::payload_words(uint32_t type) const {
       default:
         fail("a payload holds floats and integers alone: carry a condition as a uint");
     }
-    words.emplace_back(word::kColor + next++, false);
+    for (uint32_t i = 0; i < module_.scalars(id); ++i) words.emplace_back(word::kColor + next++, false);
   };
   visit(visit, type);
   if (next > kPayloadWords) {

@@ -322,7 +322,7 @@ bool Lowering::is_condition(uint32_t type, uint32_t scalar) const {
 /// A result of fewer than 32 bits, with zeros or its sign above them.
 Scalar Lowering::narrowed(uint32_t type, const Scalar& value) {
   const Type& its = module_.type(type);
-  if (its.kind != TypeKind::Int || its.bits == 32) return value;
+  if (its.kind != TypeKind::Int || its.bits >= 32) return value;
   if (!its.is_signed) return immediate(Opcode::And, value, (1u << its.bits) - 1);
   return immediate(Opcode::Sar, immediate(Opcode::Shl, value, 32 - its.bits), 32 - its.bits);
 }

@@ -89,6 +89,19 @@ bool says_nothing(spv::Op op) {
 
 }  // namespace
 
+RecordStage record_stage(spv::ExecutionModel stage) {
+  switch (stage) {
+    case spv::ExecutionModel::RayGenerationKHR:
+      return RecordStage::RayGeneration;
+    case spv::ExecutionModel::MissKHR:
+      return RecordStage::Miss;
+    case spv::ExecutionModel::CallableKHR:
+      return RecordStage::Callable;
+    default:
+      return RecordStage::HitGroup;
+  }
+}
+
 const char* lasting(const std::string& name) {
   static std::mutex mutex;
   static std::set<std::string> names;
@@ -97,8 +110,8 @@ const char* lasting(const std::string& name) {
 }
 
 Module::Module(const std::vector<uint32_t>& words, const std::string& name,
-               const std::map<uint32_t, uint32_t>& specialization)
-    : name_(name), file_{lasting(name), 0} {
+               const std::map<uint32_t, uint32_t>& specialization, uint32_t number)
+    : name_(name), file_{lasting(name), 0}, number_(number) {
   read(words, specialization);
   count_uses();
 }
@@ -130,8 +143,6 @@ bool Module::read_name(spv::Op op, const std::vector<uint32_t>& operands) {
       switch (static_cast<spv::Capability>(operands.at(0))) {
         case spv::Capability::Float64:
           fail({}, "it uses double, which the machine does not have: use float");
-        case spv::Capability::Int64:
-          fail({}, "it uses 64-bit integers, which the machine does not have: use uint or uvec2");
         case spv::Capability::Float16:
           fail({}, "it uses 16-bit floats, which the machine does not have: use float");
         default:
@@ -359,10 +370,10 @@ void Module::read_constant(Line line, const std::map<uint32_t, uint32_t>& specia
   const Type& its = type(line.type);
   switch (line.op) {
     case spv::Op::OpConstant:
-      scalars_[line.id] = line.operands.at(0);
+      if (!is_wide(line.type)) scalars_[line.id] = line.operands.at(0);
       break;
     case spv::Op::OpSpecConstant:
-      scalars_[line.id] = chosen().value_or(line.operands.at(0));
+      if (!is_wide(line.type)) scalars_[line.id] = chosen().value_or(line.operands.at(0));
       break;
     case spv::Op::OpConstantTrue:
     case spv::Op::OpConstantFalse:
@@ -373,7 +384,8 @@ void Module::read_constant(Line line, const std::map<uint32_t, uint32_t>& specia
       scalars_[line.id] = chosen().value_or(line.op == spv::Op::OpSpecConstantTrue ? 1 : 0) != 0 ? 1 : 0;
       break;
     case spv::Op::OpConstantNull:
-      if (its.kind == TypeKind::Bool || its.kind == TypeKind::Int || its.kind == TypeKind::Float) scalars_[line.id] = 0;
+      if (its.kind == TypeKind::Bool || its.kind == TypeKind::Int || its.kind == TypeKind::Float)
+        if (!is_wide(line.type)) scalars_[line.id] = 0;
       break;
     case spv::Op::OpSpecConstantOp: {
       const std::optional<uint32_t> bits = fold(line);
@@ -543,11 +555,17 @@ uint32_t Module::uses(uint32_t id) const {
   return found == uses_.end() ? 0 : found->second;
 }
 
+bool Module::is_wide(uint32_t id) const {
+  constexpr uint32_t kBits = 64;
+  return type(id).kind == TypeKind::Int && type(id).bits == kBits;
+}
+
 uint32_t Module::scalars(uint32_t id) const {
   const Type& its = type(id);
   switch (its.kind) {
-    case TypeKind::Bool:
     case TypeKind::Int:
+      return is_wide(id) ? 2 : 1;
+    case TypeKind::Bool:
     case TypeKind::Float:
       return 1;
     case TypeKind::Vector:

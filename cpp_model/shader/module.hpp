@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kernel/intermediate.hpp"
+#include "shader/resources.hpp"
 
 namespace raypool::shader {
 
@@ -84,11 +85,13 @@ struct Decorations {
 /// Throws InputError for SPIR-V that is broken, or uses what no shader here may.
 class Module {
  public:
-  /// `name`: of the file, for messages. `specialization`: constant_id -> bits.
+  /// `name`: of the file, for messages. `specialization`: constant_id -> bits. `number`: of the shader in its stage,
+  /// whose shader record it has.
   Module(const std::vector<uint32_t>& words, const std::string& name,
-         const std::map<uint32_t, uint32_t>& specialization = {});
+         const std::map<uint32_t, uint32_t>& specialization = {}, uint32_t number = 0);
 
   spv::ExecutionModel stage() const { return stage_; }
+  uint32_t number() const { return number_; }
   const std::string& name() const { return name_; }
   const Type& type(uint32_t id) const;
   const MemberLayout& layout(uint32_t struct_type, uint32_t member) const;
@@ -108,8 +111,9 @@ class Module {
   bool is_glsl_set(uint32_t id) const { return id == glsl_set_; }
   /// How often a value is used as an operand.
   uint32_t uses(uint32_t id) const;
-  /// Scalars that a value of the type has.
+  /// Scalars of 32 bits that a value of the type has; an integer of 64 bits has two, the low one first.
   uint32_t scalars(uint32_t type) const;
+  bool is_wide(uint32_t type) const;
 
   [[noreturn]] void fail(const kernel::Location& where, const std::string& what) const;
 
@@ -129,6 +133,7 @@ class Module {
 
   std::string name_;
   kernel::Location file_;
+  uint32_t number_ = 0;
   spv::ExecutionModel stage_ = spv::ExecutionModel::Max;
   uint32_t entry_ = 0, glsl_set_ = 0;
   std::map<uint32_t, Type> types_;
@@ -145,6 +150,9 @@ class Module {
   std::map<uint32_t, Line> locals_;
   std::unordered_map<uint32_t, uint32_t> uses_, types_of_values_;
 };
+
+/// Whose shader records those of a stage are.
+RecordStage record_stage(spv::ExecutionModel stage);
 
 /// A name that lives as long as the program, as places in kernels need it.
 const char* lasting(const std::string& name);

@@ -13,8 +13,15 @@
 
 namespace raypool::shader {
 
+/// Values of a thread that a kernel may keep in memory.
+inline constexpr int kSpillSlots = 256;
+
 /// Descriptor set and binding.
 using Place = std::pair<uint32_t, uint32_t>;
+
+/// Whose shader record it is: of a stage, by the number in it. Hit groups count as closest-hit shaders.
+enum class RecordStage : uint8_t { RayGeneration, Miss, HitGroup, Callable };
+using RecordPlace = std::pair<RecordStage, uint32_t>;
 
 /// A word of a uniform block or of push constants: its bits, or the number of the kernel argument that has them.
 struct Word {
@@ -47,6 +54,9 @@ struct Resources {
   std::map<Place, std::vector<Word>> blocks;  ///< uniform blocks, by word of their layout
   std::map<Place, Textures> textures;
   std::vector<Word> push_constants;
+  std::map<RecordPlace, std::vector<Word>> records;  ///< of shaders, by word of their layout
+  /// Address of the first material record of 32 bytes, where each material is a geometry; none: all are geometry 0.
+  std::optional<uint32_t> geometries;
   std::map<uint32_t, uint32_t> specialization;  ///< constant_id -> bits
   uint32_t width = 0, height = 0;               ///< of the picture, pixels
   uint32_t depth = 1;                           ///< of the deepest rays

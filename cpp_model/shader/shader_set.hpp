@@ -29,6 +29,7 @@ struct Member {
   uint32_t rows = 1, columns = 1, elements = 1;
   uint32_t row_stride = 4, column_stride = 0, element_stride = 0;  ///< bytes; a vector is a column
   bool is_float = true;
+  bool is_address = false;  ///< of a buffer: 64 bits, of which the second word is 0
 };
 
 struct Binding {
@@ -39,18 +40,40 @@ struct Binding {
   uint32_t bytes = 0;           ///< of a Block, or of the sized part of a Buffer
 };
 
+/// Which shaders a set has, and in which order traceRayEXT and executeCallableEXT count them: names of files, of which
+/// one may stand for several. A list that is empty has all files of its stage, in the order of their names; then an
+/// any-hit shader belongs to the closest-hit shader of its name, or to all if it is the only one.
+struct ShaderTable {
+  struct HitGroup {
+    std::string closest_hit, any_hit;  ///< empty: none
+  };
+  std::string ray_generation;
+  std::vector<std::string> misses, callables;
+  std::vector<HitGroup> hit_groups;
+};
+
+/// The shader record (shaderRecordEXT) of an entry of the table.
+struct ShaderRecord {
+  RecordPlace place;
+  std::string shader;  ///< its file
+  std::vector<Member> members;
+  uint32_t bytes = 0;
+};
+
 /// Throws InputError, with file and line where they are known, for what cannot be done.
 class ShaderSet {
  public:
-  /// A folder, or the name of one in shaders/, with one .rgen file, .rchit and .rmiss files, each in GLSL or as SPIR-V
-  /// (.rgen.spv ...). traceRayEXT counts those of a stage in the order of their names.
-  static std::shared_ptr<const ShaderSet> load(const std::string& folder);
+  /// Where a folder, or the folder of this name in shaders/, is.
+  static std::string find(const std::string& folder);
+  /// A folder with .rgen, .rchit, .rmiss, .rahit and .rcall files, each in GLSL or as SPIR-V (.rgen.spv ...).
+  static std::shared_ptr<const ShaderSet> load(const std::string& folder, const ShaderTable& table = {});
   virtual ~ShaderSet() = default;
 
   virtual const std::string& folder() const = 0;
   /// Those that a shader of the set uses, each once.
   virtual const std::vector<Binding>& bindings() const = 0;
   virtual const std::vector<Member>& push_constants() const = 0;
+  virtual const std::vector<ShaderRecord>& shader_records() const = 0;
   /// Whether a shader goes on when its ray has come back: the machine must have chip.miss_records, and a frame a depth
   /// of 2 or more, whatever the shaders' own. A set that does not wait ends with its traces.
   virtual bool waits() const = 0;

@@ -49,11 +49,10 @@ class PathSet {
   /// Files of one folder, in order.
   explicit PathSet(const std::vector<std::string>& files) {
     for (const std::string& file : files) {
-      auto module = std::make_unique<Module>(spirv_of(file), file);
-      std::vector<std::unique_ptr<Module>>& to = module->stage() == spv::ExecutionModel::RayGenerationKHR ? begin_
-                                                 : module->stage() == spv::ExecutionModel::MissKHR        ? misses_
-                                                                                                          : hits_;
-      to.push_back(std::move(module));
+      const std::vector<uint32_t> words = spirv_of(file);
+      std::vector<std::unique_ptr<Module>>& to = of_stage(Module(words, file).stage());
+      to.push_back(
+          std::make_unique<Module>(words, file, std::map<uint32_t, uint32_t>{}, static_cast<uint32_t>(to.size())));
     }
     uint32_t first = 1;
     for (const auto* modules : {&begin_, &hits_, &misses_}) {
@@ -67,9 +66,14 @@ class PathSet {
   WaitingShaders shaders() const {
     size_t next = 0;
     const auto one = [&](const std::unique_ptr<Module>& module) { return WaitingShader{*module, waits_.at(next++)}; };
-    WaitingShaders all = {one(begin_.at(0)), {}, {}, {}};
-    for (const auto& module : hits_) all.closest_hits.push_back(one(module));
+    WaitingShaders all = {one(begin_.at(0)), {}, {}, {}, callables(), static_cast<uint32_t>(hits_.size())};
+    for (uint32_t i = 0; i < hits_.size(); ++i) all.closest_hits.push_back({one(hits_[i]), {i}});
     for (const auto& module : misses_) all.misses.push_back(one(module));
+    return all;
+  }
+  Callables callables() const {
+    Callables all;
+    for (const auto& module : callables_) all.push_back(module.get());
     return all;
   }
   const Module& begin() const { return *begin_.at(0); }
@@ -77,12 +81,25 @@ class PathSet {
   const Module* hit(uint32_t index) const { return index < hits_.size() ? hits_[index].get() : nullptr; }
   template <typename Visit>
   void each(const Visit& visit) const {
-    for (const auto* modules : {&begin_, &hits_, &misses_})
+    for (const auto* modules : {&begin_, &hits_, &misses_, &callables_})
       for (const auto& module : *modules) visit(*module);
   }
 
  private:
-  std::vector<std::unique_ptr<Module>> begin_, hits_, misses_;
+  std::vector<std::unique_ptr<Module>>& of_stage(spv::ExecutionModel stage) {
+    switch (stage) {
+      case spv::ExecutionModel::RayGenerationKHR:
+        return begin_;
+      case spv::ExecutionModel::MissKHR:
+        return misses_;
+      case spv::ExecutionModel::CallableKHR:
+        return callables_;
+      default:
+        return hits_;
+    }
+  }
+
+  std::vector<std::unique_ptr<Module>> begin_, hits_, misses_, callables_;
   std::deque<Waits> waits_;
 };
 
@@ -176,9 +193,11 @@ class Paths {
       run(called, steps);
       payload = *called.payload;
     };
+    thread.callables = set_.callables();
     thread.run();
     collect(thread);
   }
+
   const PathSet& set_;
   World& world_;
   WaitingShaders shaders_;

@@ -82,6 +82,9 @@ class SpirvThread {
   std::optional<Words> payload;
   std::optional<uint32_t> ray_flags;
   float begin = 0;
+  /// What executeCallableEXT counts; of a shader that it calls, its data before and behind run().
+  std::vector<const shader::Module*> callables;
+  std::optional<Words> callable_data;
 
   void run() {
     if (kernel_ == RayKernel::CastEye) {
@@ -96,6 +99,8 @@ class SpirvThread {
     variables();
     blocks();
     if (payload) give_payload();
+    for (const auto& [id, variable] : module_.variables())
+      if (variable.storage == spv::StorageClass::IncomingCallableDataKHR) callable_data = storage_.at(id);
   }
 
  private:
@@ -134,6 +139,8 @@ class SpirvThread {
       Words words;
       if (const auto bits = module_.constant(line.id)) {
         words.push_back(known(*bits));
+      } else if (module_.is_wide(line.type) && line.operands.size() == 2) {
+        words = {known(line.operands[0]), known(line.operands[1])};
       } else if (line.op == Op::OpConstantComposite || line.op == Op::OpSpecConstantComposite) {
         for (const uint32_t part : line.operands) append(words, get(part));
       } else if (line.op == Op::OpConstantNull) {
@@ -171,6 +178,10 @@ class SpirvThread {
           to.place = Place::Block;
           to.block = &resources_.push_constants;
           break;
+        case spv::StorageClass::ShaderRecordBufferKHR:
+          to.place = Place::Block;
+          to.block = &resources_.records.at({shader::record_stage(module_.stage()), module_.number()});
+          break;
         case spv::StorageClass::UniformConstant: {
           uint32_t element = pointer.element;
           const shader::TypeKind outer = module_.type(element).kind;
@@ -191,6 +202,8 @@ class SpirvThread {
             words = hit_attributes(module_.scalars(pointer.element));
           else if (variable.storage == spv::StorageClass::IncomingRayPayloadKHR)
             words = payload ? *payload : incoming_payload(pointer.element);
+          else if (variable.storage == spv::StorageClass::IncomingCallableDataKHR && callable_data)
+            words = *callable_data;
           else if (variable.initial != 0)
             words = get(variable.initial);
           words.resize(module_.scalars(pointer.element));
@@ -246,8 +259,11 @@ class SpirvThread {
         return input_words(word::kTriangle, 1);
       case spv::BuiltIn::InstanceId:
       case spv::BuiltIn::InstanceCustomIndexKHR:
-      case spv::BuiltIn::RayGeometryIndexKHR:
         return {known(0)};
+      case spv::BuiltIn::RayGeometryIndexKHR: {
+        const uint32_t first = resources_.geometries.value_or(input[word::kMaterial]);
+        return {known((input[word::kMaterial] - first) / kMaterialBytes)};
+      }
       case spv::BuiltIn::HitKindKHR: {
         // A ray meets the front where it runs against the normal.
         const Word along = dot(input_words(word::kDirection, 3), input_words(word::kNormal, 3));
@@ -487,6 +503,7 @@ class SpirvThread {
         return;
       default:
         visit(byte);
+        if (module_.is_wide(type)) visit(byte + 4);
     }
   }
 
@@ -594,6 +611,7 @@ class SpirvThread {
         return function(static_cast<int32_t>(a), static_cast<int32_t>(b)) ? 1u : 0u;
       });
     };
+    if (wide(line)) return;
     switch (line.op) {
       // pointers
       case Op::OpAccessChain:
@@ -641,7 +659,13 @@ class SpirvThread {
         values_[line.id].words = {known((ends_.at(o[0]) - offset) / stride)};
         return;
       }
+      case Op::OpConvertPtrToU:
+        values_[line.id].words.assign(module_.scalars(line.type), known(0));
+        values_[line.id].words.at(0) = known(pointer(o.at(0)).offset);
+        return;
       // rays and pictures
+      case Op::OpExecuteCallableKHR:
+        return execute_callable(line);
       case Op::OpTraceRayKHR:
         return trace(line);
       case Op::OpImageWrite:
@@ -1329,6 +1353,62 @@ class SpirvThread {
   }
 
   // ---- what leaves
+
+  void execute_callable(const shader::Line& line) {
+    const uint32_t index = decided(get(line.operands.at(0)).at(0));
+    if (index >= callables.size()) throw UndefinedBehaviour("a callable shader is called that there is not");
+    const Pointer& data = pointer(line.operands.at(1));
+    SpirvThread called(*callables[index], resources_, kernel_, arguments_, memory_);
+    called.thread = thread;
+    called.block = block;
+    called.input = input;
+    called.callables = callables;
+    called.callable_data = read(data);
+    called.run();
+    called.callable_data->resize(module_.scalars(data.type));
+    write(data, *called.callable_data);
+  }
+
+  /// Arithmetic of 64-bit integers.
+  bool wide(const shader::Line& line) {
+    const auto is_wide = [&](uint32_t type) { return type != 0 && module_.is_wide(type); };
+    if (line.operands.empty()) return false;
+    const bool gives = is_wide(line.type), takes = is_wide(module_.type_of(line.operands[0]));
+    if (!gives && !takes) return false;
+    const auto of = [&](size_t i) -> uint64_t {
+      const Words words = get(line.operands.at(i));
+      const auto high = words.size() > 1 ? decided(words[1]) : 0;
+      return uint64_t{high} << 32 | decided(words.at(0));
+    };
+    const auto give = [&](uint64_t value) {
+      Words& words = values_[line.id].words;
+      words = {known(static_cast<uint32_t>(value))};
+      if (gives) words.push_back(known(static_cast<uint32_t>(value >> 32)));
+      return true;
+    };
+    switch (line.op) {
+      case Op::OpIAdd:
+        return give(of(0) + of(1));
+      case Op::OpISub:
+        return give(of(0) - of(1));
+      case Op::OpIMul:
+        return give(of(0) * of(1));
+      case Op::OpShiftLeftLogical:
+        return give(of(0) << of(1));
+      case Op::OpShiftRightLogical:
+        return give(of(0) >> of(1));
+      case Op::OpUConvert:
+        return give(of(0));
+      case Op::OpSConvert:
+        return give(takes ? of(0) : static_cast<uint64_t>(int64_t{static_cast<int32_t>(of(0))}));
+      case Op::OpIEqual:
+        return give(of(0) == of(1) ? 1 : 0);
+      case Op::OpINotEqual:
+        return give(of(0) != of(1) ? 1 : 0);
+      default:
+        return false;
+    }
+  }
 
   void trace(const shader::Line& line) {
     const std::vector<uint32_t>& o = line.operands;

@@ -27,7 +27,7 @@ namespace raypool::shader {
 inline constexpr uint32_t kWidth = 16, kHeight = 8, kDepth = 6;
 inline constexpr uint32_t kElements = 16;  // of arrays without a size, of textures and of material records
 inline constexpr uint32_t kMemoryBytes = 1 << 16;
-inline constexpr uint32_t kSpillSlots = 64;  // behind it
+// Behind it what kernels spill.
 inline constexpr uint32_t kWithSpilled = kMemoryBytes + 4 * kWidth * kHeight * (kDepth + 1) * kSpillSlots;
 inline constexpr uint32_t kTexelSide = 4;
 inline constexpr uint32_t kFirstArgument = 24;  // that a uniform word may be: four floats, then four integers
@@ -104,6 +104,9 @@ class World {
       switch (variable.storage) {
         case spv::StorageClass::PushConstant:
           resources.push_constants = words(module, type, counted);
+          break;
+        case spv::StorageClass::ShaderRecordBufferKHR:
+          resources.records[{record_stage(module.stage()), module.number()}] = words(module, type, counted);
           break;
         case spv::StorageClass::Uniform:
           if (resources.blocks.count(place) == 0) resources.blocks[place] = words(module, type, counted);
@@ -218,6 +221,7 @@ class World {
         return;  // nothing that could be followed
       default:
         leaf(byte, its);
+        if (module.is_wide(type)) leaf(byte + 4, its);
     }
   }
 

@@ -103,6 +103,8 @@ class Liveness {
       case spv::StorageClass::HitAttributeKHR:
       case spv::StorageClass::RayPayloadKHR:
       case spv::StorageClass::IncomingRayPayloadKHR:
+      case spv::StorageClass::CallableDataKHR:
+      case spv::StorageClass::IncomingCallableDataKHR:
         return true;
       default:
         return false;
@@ -187,6 +189,10 @@ class Liveness {
         use_all(0, 10);
         if (const uint32_t payload = payload_of(line); is_variable(payload)) live.insert(payload);
         return;
+      case spv::Op::OpExecuteCallableKHR:
+        use(line.operands.at(0), live);
+        live.insert(line.operands.at(1));
+        return;
       case spv::Op::OpExtInst: {
         const uint32_t last = line.operands.back();
         const uint32_t type = module_.type_of(last);
@@ -220,7 +226,8 @@ std::set<uint32_t> reachable(const Module& module, uint32_t from) {
   return seen;
 }
 
-/// Of lines that depend on nothing but the thread's pixel and what is known when shaders are compiled.
+/// Of lines that depend on nothing but the thread's pixel and what is known when shaders are compiled. Beside moves and
+/// conversions, these are integers and conditions made of uniform blocks, which are known then in most cases.
 class Steady {
  public:
   Steady(const Module& module, const Liveness& liveness) : module_(module), liveness_(liveness) {}
@@ -252,7 +259,66 @@ class Steady {
   }
 
  private:
+  /// A part of a uniform block, the push constants or the shader record, at constant indices.
+  bool is_of_block(uint32_t pointer) const {
+    while (const Line* line = liveness_.made(pointer)) {
+      if (!is_access(line->op)) return false;
+      for (size_t i = 1; i < line->operands.size(); ++i)
+        if (liveness_.made(line->operands[i]) != nullptr) return false;
+      pointer = line->operands.at(0);
+    }
+    const auto variable = module_.variables().find(pointer);
+    if (variable == module_.variables().end()) return false;
+    const spv::StorageClass storage = variable->second.storage;
+    return storage == spv::StorageClass::Uniform || storage == spv::StorageClass::PushConstant ||
+           storage == spv::StorageClass::ShaderRecordBufferKHR;
+  }
+
+  /// Made of constants and uniform blocks alone.
+  bool is_fixed(uint32_t id) {
+    const Line* line = liveness_.made(id);
+    if (line == nullptr) return module_.type_of(id) != 0;
+    const auto known = fixed_.find(id);
+    if (known != fixed_.end()) return known->second;
+    return fixed_[id] = is_fixed_line(*line);
+  }
+  bool is_fixed_line(const Line& line) {
+    switch (line.op) {
+      case spv::Op::OpLoad:
+        return is_of_block(line.operands.at(0));
+      case spv::Op::OpCompositeExtract:
+      case spv::Op::OpBitcast:
+      case spv::Op::OpIAdd:
+      case spv::Op::OpISub:
+      case spv::Op::OpIMul:
+      case spv::Op::OpBitwiseAnd:
+      case spv::Op::OpBitwiseOr:
+      case spv::Op::OpSelect:
+      case spv::Op::OpLogicalAnd:
+      case spv::Op::OpLogicalOr:
+      case spv::Op::OpLogicalNot:
+      case spv::Op::OpIEqual:
+      case spv::Op::OpINotEqual:
+      case spv::Op::OpSLessThan:
+      case spv::Op::OpSLessThanEqual:
+      case spv::Op::OpSGreaterThan:
+      case spv::Op::OpSGreaterThanEqual:
+      case spv::Op::OpULessThan:
+      case spv::Op::OpULessThanEqual:
+      case spv::Op::OpUGreaterThan:
+      case spv::Op::OpUGreaterThanEqual:
+        break;
+      default:
+        return false;
+    }
+    const Ids ids = ids_of(line);
+    for (size_t i = ids.first; i < std::min(ids.end, line.operands.size()); ++i)
+      if (!is_fixed(line.operands[i])) return false;
+    return true;
+  }
+
   bool is_line(const Line& line) {
+    if (is_fixed(line.id)) return true;
     switch (line.op) {
       case spv::Op::OpLoad:
         return is_steady_pointer(line.operands.at(0));
@@ -274,7 +340,7 @@ class Steady {
 
   const Module& module_;
   const Liveness& liveness_;
-  std::map<uint32_t, bool> known_;
+  std::map<uint32_t, bool> known_, fixed_;
 };
 
 /// Whether a shader that ends with its traces could not do as much.

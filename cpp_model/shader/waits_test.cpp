@@ -34,7 +34,8 @@ std::vector<std::string> shaders_in(const fs::path& folder) {
   std::vector<std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string ending = entry.path().extension().string();
-    if (ending == ".rgen" || ending == ".rchit" || ending == ".rmiss") files.push_back(entry.path().string());
+    if (ending == ".rgen" || ending == ".rchit" || ending == ".rmiss" || ending == ".rcall")
+      files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
   return files;

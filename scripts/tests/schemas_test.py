@@ -10,6 +10,7 @@ import copy
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -141,6 +142,43 @@ class Agreement(unittest.TestCase):
         taken = sum(self.check("view.json", document, command) for document in documents)
         self.assertGreater(taken, 7)
         self.assertGreater(len(documents) - taken, 14)
+
+    def test_descriptions_of_shaders(self):
+        valid = validator("shaders.json")
+        for path in sorted(ROOT.glob("cpp_model/shader/cases/*/shaders.json")):
+            self.assertEqual([error.message for error in valid.iter_errors(read(path))], [], path)
+        table = ROOT / "cpp_model" / "shader" / "cases" / "table"
+        shutil.copytree(table, self.folder, dirs_exist_ok=True)
+        good = read(table / "shaders.json")
+        first = good["hit_groups"]
+        changes = [
+            {},
+            {"geometries": "objects"},
+            {"miss": "a.rmiss"},
+            {"miss": good["miss"] + [{"shader": "shadow.rmiss", "values": {}}]},
+            {"callable": good["callable"] + ["point.rcall"]},
+            {"callable": [{"record": {}}]},
+            {"hit_groups": first + [{}]},
+            {"hit_groups": first + [{"closest": "a.rchit"}]},
+            {"hit_groups": first + [{}] * 7},
+            {"ray_generation": {"shader": "a.rgen", "record": [1]}},
+            {"push_constants": 0},
+        ]
+        pad = "materials", {"pad_to": 64}
+        for name, more in (("buffers", {}), ("colors", {}), pad, ("materials", {"pad_to": 3})):
+            holds = {"address": {name: ["roughness"], **more} if more else name}
+            words = [0, 0.5, holds, holds, holds, holds]
+            changes.append({"bindings": [{"set": 1, "binding": 0, "holds": {"words": words}}]})
+        taken = 0
+        for change in changes:
+            document = {**good, **change}
+            (self.folder / "shaders.json").write_text(json.dumps(document))
+            done = raypool("sim", "cornell", "--engine", "native", "--size", "8x8", "--quiet", "--shaders",
+                           str(self.folder), "--out", str(self.folder / "out"))  # fmt: skip
+            errors = [error.message for error in valid.iter_errors(document)]
+            self.assertEqual(done.returncode == 0, not errors, f"{change}: '{done.stderr.strip()}', {errors}")
+            taken += done.returncode == 0
+        self.assertEqual(taken, 5)
 
 
 class Written(unittest.TestCase):

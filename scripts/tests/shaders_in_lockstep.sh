@@ -104,6 +104,7 @@ wait_large() {
   draw cornell bounces 6x4 1 1
   draw cornell groups 12x8 1 1
   draw $features cutouts 12x8 1 1
+  draw $features table 6x4 1 1
 }
 if [ "$boundary" = unit ]; then
   on_unit

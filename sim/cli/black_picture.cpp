@@ -24,6 +24,8 @@ std::string why_black(const FrameBuffer& frame, const RayCounts& rays, const Sce
   const std::vector<uint8_t> picture = to_rgb8(frame);
   if (std::any_of(picture.begin(), picture.end(), [](uint8_t value) { return value != 0; })) return "";
   const std::string black = "the picture is all black: ";
+  if (shaders && rays.eye.traced == 0)
+    return black + "its shaders trace no ray; look at what switches them off (specialization constants, for instance)";
   if (rays.eye.ended == rays.eye.traced) return black + why_nothing_is_seen(scene, eye);
   if (shaders) return black + "its shaders add nothing to it that is light enough to show; look at what they store";
   if (rays.shadow.futile == rays.shadow.traced) {

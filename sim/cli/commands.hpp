@@ -13,6 +13,7 @@
 #include "cli/scene_loading.hpp"
 #include "machine/common/memory.hpp"
 #include "machine/compute/compute_unit.hpp"
+#include "scene/shader_file.hpp"
 #include "scene/shader_memory.hpp"
 #include "shader/shader_set.hpp"
 
@@ -64,7 +65,7 @@ struct SimOptions {
   std::vector<std::string> command;  ///< the command line, for the report
   /// Puts something around the device, which works on that memory; empty: nothing. No option of the command line.
   std::function<std::unique_ptr<ComputeUnit>(std::unique_ptr<ComputeUnit>, const Memory&)> wrap = {};
-  ShaderSource shader_source = {shader::ShaderSet::load, build_shader_memory};
+  ShaderSource shader_source = {load_shaders, build_shader_memory};
   const EstimatingEngines* estimating = nullptr;  ///< engines sampled and estimate; null: there are none
 };
 int sim_command(const SimOptions& options);

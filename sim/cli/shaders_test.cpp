@@ -27,6 +27,7 @@ class RecordedSet : public shader::ShaderSet {
   const std::string& folder() const override { return folder_; }
   const std::vector<shader::Binding>& bindings() const override { return bindings_; }
   const std::vector<shader::Member>& push_constants() const override { return constants_; }
+  const std::vector<shader::ShaderRecord>& shader_records() const override { return records_; }
   bool waits() const override { return false; }
   uint32_t path_words(const std::map<uint32_t, uint32_t>& /*specialization*/) const override { return 0; }
   RayFunctions record(const shader::Resources& resources, const KernelTarget& target,
@@ -39,6 +40,7 @@ class RecordedSet : public shader::ShaderSet {
   Record record_;
   std::vector<shader::Binding> bindings_;
   std::vector<shader::Member> constants_;
+  std::vector<shader::ShaderRecord> records_;
 };
 
 RayFunctions built_in(const shader::Resources& /*resources*/, const KernelTarget& target) {

@@ -23,7 +23,8 @@ ShaderFile::ShaderFile(const std::string& folder)
   if (std::error_code none; !std::filesystem::exists(path_, none)) return;
   json_ = parse_json(read_text_file(path_, "description of shaders"), path_);
   const JsonPlace root(json_, path_);
-  root.refuse_unknown({"$schema", "bindings", "push_constants", "specialization"});
+  root.refuse_unknown({"$schema", "bindings", "push_constants", "specialization", "ray_generation", "miss",
+                       "hit_groups", "callable", "geometries"});
   const std::optional<JsonPlace> bindings = root.find("bindings");
   for (size_t i = 0; bindings && i < bindings->size(); ++i) {
     const JsonPlace entry = bindings->at(i);
@@ -40,6 +41,8 @@ ShaderFile::ShaderFile(const std::string& folder)
   }
   if (const std::optional<JsonPlace> values = root.find("push_constants")) values->members();
   specialization();
+  table();
+  geometries_are_materials();
 }
 
 std::optional<JsonPlace> ShaderFile::binding(const shader::Place& place) const {
@@ -48,10 +51,71 @@ std::optional<JsonPlace> ShaderFile::binding(const shader::Place& place) const {
   return JsonPlace(json_, path_).at("bindings").at(found->second);
 }
 
-std::optional<JsonPlace> ShaderFile::value(const std::optional<shader::Place>& place, const std::string& member) const {
-  const std::optional<JsonPlace> entry = place ? binding(*place) : JsonPlace(json_, path_).find("push_constants");
-  const std::optional<JsonPlace> values = place && entry ? entry->find("values") : entry;
-  return values ? values->find(member.c_str()) : std::nullopt;
+std::optional<JsonPlace> ShaderFile::values(const shader::Place& place) const {
+  const std::optional<JsonPlace> entry = binding(place);
+  return entry ? entry->find("values") : std::nullopt;
+}
+
+std::optional<JsonPlace> ShaderFile::push_constants() const { return JsonPlace(json_, path_).find("push_constants"); }
+
+std::optional<JsonPlace> ShaderFile::record(const shader::RecordPlace& place) const {
+  static const std::map<shader::RecordStage, const char*> kKeys = {{shader::RecordStage::Miss, "miss"},
+                                                                   {shader::RecordStage::HitGroup, "hit_groups"},
+                                                                   {shader::RecordStage::Callable, "callable"}};
+  const JsonPlace root(json_, path_);
+  std::optional<JsonPlace> entry;
+  if (place.first == shader::RecordStage::RayGeneration) {
+    entry = root.find("ray_generation");
+  } else if (const std::optional<JsonPlace> list = root.find(kKeys.at(place.first));
+             list && place.second < list->size()) {
+    entry = list->at(place.second);
+  }
+  return entry && entry->json().is_object() ? entry->find("record") : std::nullopt;
+}
+
+shader::ShaderTable ShaderFile::table() const {
+  const JsonPlace root(json_, path_);
+  const auto record = [](const JsonPlace& entry) {
+    if (const std::optional<JsonPlace> values = entry.find("record")) values->members();
+  };
+  // "a.rmiss", or {"shader": "a.rmiss", "record": {...}}
+  const auto shader_of = [&](const JsonPlace& entry) {
+    if (!entry.json().is_object()) return entry.text();
+    entry.refuse_unknown({"shader", "record"});
+    record(entry);
+    return entry.at("shader").text();
+  };
+  const auto names = [&](const char* key) {
+    std::vector<std::string> all;
+    if (const std::optional<JsonPlace> list = root.find(key))
+      for (size_t i = 0; i < list->size(); ++i) all.push_back(shader_of(list->at(i)));
+    return all;
+  };
+  shader::ShaderTable table;
+  if (const std::optional<JsonPlace> entry = root.find("ray_generation")) table.ray_generation = shader_of(*entry);
+  table.misses = names("miss");
+  table.callables = names("callable");
+  const std::optional<JsonPlace> groups = root.find("hit_groups");
+  for (size_t i = 0; groups && i < groups->size(); ++i) {
+    const JsonPlace group = groups->at(i);
+    group.refuse_unknown({"closest_hit", "any_hit", "record"});
+    record(group);
+    const std::optional<JsonPlace> closest_hit = group.find("closest_hit"), any_hit = group.find("any_hit");
+    table.hit_groups.push_back({closest_hit ? closest_hit->text() : "", any_hit ? any_hit->text() : ""});
+  }
+  return table;
+}
+
+bool ShaderFile::geometries_are_materials() const {
+  const std::optional<JsonPlace> geometries = JsonPlace(json_, path_).find("geometries");
+  if (geometries && geometries->text() != "materials")
+    geometries->fail("must be \"materials\", or left out: then all triangles are of geometry 0");
+  return geometries.has_value();
+}
+
+std::shared_ptr<const shader::ShaderSet> load_shaders(const std::string& folder) {
+  const std::string found = shader::ShaderSet::find(folder);
+  return shader::ShaderSet::load(found, ShaderFile(found).table());
 }
 
 std::map<uint32_t, uint32_t> ShaderFile::specialization() const {

@@ -3,13 +3,18 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "scene/json_place.hpp"
 #include "shader/resources.hpp"
+#include "shader/shader_set.hpp"
 
 namespace raypool {
+
+/// A folder of shaders, or the name of one in shaders/, with its shaders.json.
+std::shared_ptr<const shader::ShaderSet> load_shaders(const std::string& folder);
 
 class ShaderFile {
  public:
@@ -21,8 +26,13 @@ class ShaderFile {
   const std::string& path() const { return path_; }
   /// The entry of a binding, with "holds" or "values"; none: there is none.
   std::optional<JsonPlace> binding(const shader::Place& place) const;
-  /// The value of a member: of the binding, or of push constants where there is no place.
-  std::optional<JsonPlace> value(const std::optional<shader::Place>& place, const std::string& member) const;
+  /// Values by member: of a binding, of the push constants, of the shader record of an entry; none: there are none.
+  std::optional<JsonPlace> values(const shader::Place& place) const;
+  std::optional<JsonPlace> push_constants() const;
+  std::optional<JsonPlace> record(const shader::RecordPlace& place) const;
+  shader::ShaderTable table() const;
+  /// Whether each material is a geometry of its own.
+  bool geometries_are_materials() const;
   /// Specialization constants, by constant_id: their bits.
   std::map<uint32_t, uint32_t> specialization() const;
 

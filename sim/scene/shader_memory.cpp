@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -103,7 +104,14 @@ class ShaderMemory {
           break;
       }
     }
-    put_members(std::nullopt, set_.push_constants(), "push constants", resources_.push_constants);
+    put_members(file_.push_constants(), set_.push_constants(), "push constants", resources_.push_constants);
+    for (const shader::ShaderRecord& record : set_.shader_records()) {
+      std::vector<shader::Word>& words = resources_.records[record.place];
+      words.resize((size_t{record.bytes} + 3) / 4);
+      put_members(file_.record(record.place), record.members,
+                  fmt::format("shader record {} of {}", record.place.second, record.shader), words);
+    }
+    if (file_.geometries_are_materials()) resources_.geometries = image_.material_base;
     resources_.specialization = file_.specialization();
     resources_.width = frame_.width;
     resources_.height = frame_.height;
@@ -166,13 +174,18 @@ class ShaderMemory {
           fmt::format("is for {}, which the shaders declare as a uniform block: give it 'values'", name_of(binding)));
     std::vector<shader::Word>& words = resources_.blocks[binding.place];
     words.resize((size_t{binding.bytes} + 3) / 4);
-    put_members(binding.place, binding.members, name_of(binding), words);
+    put_members(file_.values(binding.place), binding.members, name_of(binding), words);
   }
-  void put_members(const std::optional<shader::Place>& place, const std::vector<shader::Member>& members,
-                   const std::string& name, std::vector<shader::Word>& words) const {
+  void put_members(const std::optional<JsonPlace>& values, const std::vector<shader::Member>& members,
+                   const std::string& name, std::vector<shader::Word>& words) {
+    std::vector<std::string> without;
     for (const shader::Member& member : members) {
       const std::string where = fmt::format("{}: {}: member '{}'", set_.folder(), name, member.name);
-      const std::optional<JsonPlace> given = file_.value(place, member.name);
+      const std::optional<JsonPlace> given = values ? values->find(member.name.c_str()) : std::nullopt;
+      if (member.is_address) {
+        put_address(member, given, where, words);
+        continue;
+      }
       if (given && !given->json().is_string()) {
         put_numbers(member, *given, words);
         continue;
@@ -186,10 +199,37 @@ class ShaderMemory {
                                 did_you_mean(value, names, fmt::format("known are {}", fmt::join(names, ", ")))));
       }
       if (known == values_.end()) {
-        throw InputError(fmt::format("{} has no value: give it one, known or in numbers, in {}", where, file_.path()));
+        without.push_back(member.name);
+        continue;
       }
       put_value(member, known->second, where, words);
     }
+    if (without.empty()) return;
+    throw InputError(fmt::format("{}: {}: {} '{}' {} no value: give {}, known or in numbers, in {}", set_.folder(),
+                                 name, without.size() == 1 ? "member" : "members", fmt::join(without, "', '"),
+                                 without.size() == 1 ? "has" : "have", without.size() == 1 ? "it one" : "them some",
+                                 file_.path()));
+  }
+
+  void put_address(const shader::Member& member, const std::optional<JsonPlace>& given, const std::string& where,
+                   std::vector<shader::Word>& words) {
+    if (!given) {
+      throw InputError(fmt::format("{} is the address of a buffer: say in {} what it holds, as {{\"address\": ...}}",
+                                   where, file_.path()));
+    }
+    const size_t place = member.offset / 4;
+    words.resize(std::max(words.size(), place + 2));
+    words[place] = {address_of(*given), std::nullopt};
+    words[place + 1] = {0, std::nullopt};
+  }
+  /// {"address": what a buffer may hold}; the same buffer for the same words.
+  uint32_t address_of(const JsonPlace& given) {
+    given.refuse_unknown({"address"});
+    const JsonPlace holds = given.at("address");
+    const std::string text = holds.json().dump();
+    const auto known = addresses_.find(text);
+    if (known != addresses_.end()) return known->second;
+    return addresses_[text] = described(holds).address;
   }
 
   // Buffers.
@@ -221,7 +261,7 @@ class ShaderMemory {
   shader::Buffer of_kind(const std::string& kind) { return kind == "materials" ? materials_ : place(contents(kind)); }
   shader::Buffer described(const JsonPlace& holds) {
     if (holds.json().is_string()) {
-      std::vector<std::string> kinds;
+      std::vector<std::string> kinds = {"triangle_materials"};
       for (const KnownBinding& each : kKnownBindings) kinds.emplace_back(each.holds);
       const std::string kind = holds.text();
       if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
@@ -230,58 +270,133 @@ class ShaderMemory {
       }
       return of_kind(kind);
     }
-    holds.refuse_unknown({"interleaved", "pad_to", "floats", "integers"});
-    const std::optional<JsonPlace> interleaved = holds.find("interleaved"), floats = holds.find("floats"),
-                                   integers = holds.find("integers");
-    if ((interleaved ? 1 : 0) + (floats ? 1 : 0) + (integers ? 1 : 0) != 1)
-      holds.fail("must have one of 'interleaved', 'floats' and 'integers'");
-    if (interleaved) return place(interleaved_words(*interleaved, holds.find("pad_to")));
-    const JsonPlace& numbers = floats ? *floats : *integers;
+    const std::vector<std::string> keys = {"interleaved", "materials", "words", "floats", "integers"};
+    holds.refuse_unknown({"interleaved", "materials", "words", "floats", "integers", "pad_to"});
+    std::vector<std::string> given;
+    for (const std::string& key : keys)
+      if (holds.find(key.c_str())) given.push_back(key);
+    if (given.size() != 1) holds.fail(fmt::format("must have one of '{}'", fmt::join(keys, "', '")));
+    const JsonPlace list = holds.at(given[0].c_str());
+    if (given[0] == "interleaved") {
+      // Numbers among them are floats, however they are written.
+      return place(elements(list, holds.find("pad_to"), surfaces_.positions.size(), vertex_fields(), "a vertex", true));
+    }
+    if (given[0] == "materials") {
+      return place(
+          elements(list, holds.find("pad_to"), surfaces_.materials.size(), material_fields(), "a material", false));
+    }
     Words words;
-    for (size_t i = 0; i < numbers.size(); ++i) words.push_back(bits_of(numbers.at(i), floats.has_value()));
-    if (words.empty()) numbers.fail("is empty; give at least one number");
+    for (size_t i = 0; i < list.size(); ++i) {
+      if (given[0] == "words")
+        append_given(list.at(i), words);
+      else
+        words.push_back(bits_of(list.at(i), given[0] == "floats"));
+    }
+    if (words.empty()) list.fail("is empty; give at least one number");
     return place(words);
   }
-  /// Vertex after vertex: the attributes that are named, and numbers that are the same in all.
-  Words interleaved_words(const JsonPlace& list, const std::optional<JsonPlace>& pad_to) const {
-    struct Part {
-      std::string attribute;  // empty: a number
-      uint32_t bits = 0;
+  /// A number written with a point or an exponent is a float, others are integers; an address has two words.
+  void append_given(const JsonPlace& given, Words& words) {
+    if (given.json().is_object()) {
+      words.push_back(address_of(given));
+      words.push_back(0);
+      return;
+    }
+    words.push_back(bits_of(given, given.json().is_number_float()));
+  }
+
+  /// What a vertex or a material has, by name: adds its words to others.
+  using Fields = std::map<std::string, std::function<void(size_t, Words&)>>;
+  Fields vertex_fields() const {
+    return {{"position", [this](size_t i, Words& words) { append_words(words, surfaces_.positions[i]); }},
+            {"normal", [this](size_t i, Words& words) { append_words(words, surfaces_.normals[i]); }},
+            {"texcoord", [this](size_t i, Words& words) { append_words(words, texcoord(i)); }},
+            {"color", [this](size_t i, Words& words) { append_words(words, color(i)); }}};
+  }
+  Fields material_fields() const {
+    const auto field = [this](const auto& of) {
+      return [this, of](size_t i, Words& words) { append_words(words, of(surfaces_.materials[i])); };
     };
+    const auto texture = [&](std::optional<uint32_t> SurfaceMaterial::*member) {
+      return field([member](const SurfaceMaterial& m) { return (m.*member) ? *(m.*member) + 1 : 0u; });
+    };
+    using Of = const SurfaceMaterial&;
+    return {{"base_color", field([](Of m) { return m.base_color; })},
+            {"diffuse", field([](Of m) { return rgb(m.base_color) * (1 - m.metallic); })},
+            {"specular", field([](Of m) { return reflectance(m); })},
+            {"emission", field([](Of m) { return m.emission; })},
+            {"metallic", field([](Of m) { return m.metallic; })},
+            {"roughness", field([](Of m) { return m.roughness; })},
+            {"shininess", field([](Of m) { return shininess(m.roughness); })},
+            {"transmission", field([](Of m) { return m.transmission; })},
+            {"ior", field([](Of m) { return m.ior; })},
+            {"alpha", field([](Of m) { return m.base_color[3]; })},
+            {"alpha_cutoff", field([](Of m) { return m.alpha_cutoff; })},
+            {"alpha_mode", field([](Of m) { return static_cast<uint32_t>(m.alpha_mode); })},
+            {"illum", field([](Of m) { return illum(m); })},
+            {"base_color_texture", texture(&SurfaceMaterial::base_color_texture)},
+            {"emission_texture", texture(&SurfaceMaterial::emission_texture)},
+            {"metallic_roughness_texture", texture(&SurfaceMaterial::metallic_roughness_texture)}};
+  }
+  static Vec3 rgb(const Rgba& color) { return {color[0], color[1], color[2]}; }
+  /// At normal incidence; of what is no metal 0.04.
+  static Vec3 reflectance(const SurfaceMaterial& m) {
+    const float of_plastic = 0.04f * (1 - m.metallic);
+    return rgb(m.base_color) * m.metallic + Vec3{of_plastic, of_plastic, of_plastic};
+  }
+  /// Of MTL, which its roughness was made of (docs/use/scenes.md).
+  static float shininess(float roughness) {
+    constexpr float kMost = 10000;
+    const float squared = roughness * roughness;
+    return std::clamp(2 / std::max(squared * squared, 1e-6f) - 2, 0.0f, kMost);
+  }
+  /// Of MTL: 3, a mirror; 4, transparent; 2.
+  static uint32_t illum(const SurfaceMaterial& m) {
+    if (m.metallic >= 0.5f && m.roughness < 0.1f) return 3;
+    return m.alpha_mode == AlphaMode::Blend || m.transmission >= 0.5f ? 4 : 2;
+  }
+
+  /// One after the other, each with these fields and numbers.
+  Words elements(const JsonPlace& list, const std::optional<JsonPlace>& pad_to, size_t count, const Fields& fields,
+                 const char* what, bool numbers_are_floats) {
+    struct Part {
+      const std::function<void(size_t, Words&)>* field = nullptr;  // null: the same in all
+      Words words;
+    };
+    std::vector<std::string> names;
+    for (const auto& each : fields) names.push_back(each.first);
     std::vector<Part> parts;
     for (size_t i = 0; i < list.size(); ++i) {
       const JsonPlace part = list.at(i);
-      if (part.json().is_number()) {
-        parts.push_back({"", bits_of(part, true)});
+      parts.emplace_back();
+      if (numbers_are_floats && part.json().is_number()) {
+        parts.back().words.push_back(bits_of(part, true));
         continue;
       }
-      const std::string name = part.text();
-      const std::vector<std::string> names = {"position", "normal", "texcoord", "color"};
-      if (std::find(names.begin(), names.end(), name) == names.end()) {
-        part.fail(fmt::format("is '{}', which is nothing of a vertex{}", name,
-                              did_you_mean(name, names, "a vertex has position, normal, texcoord and color")));
+      if (!part.json().is_string()) {
+        append_given(part, parts.back().words);
+        continue;
       }
-      parts.push_back({name, 0});
+      const auto field = fields.find(part.text());
+      if (field == fields.end()) {
+        const std::string all = fmt::format("{} has {}", what, fmt::join(names, ", "));
+        part.fail(
+            fmt::format("is '{}', which is nothing of {}{}", part.text(), what, did_you_mean(part.text(), names, all)));
+      }
+      parts.back().field = &field->second;
     }
-    if (parts.empty()) list.fail("is empty; name at least one of position, normal, texcoord and color");
+    if (parts.empty()) list.fail(fmt::format("is empty; name at least one of {}", fmt::join(names, ", ")));
     Words words;
     size_t stride = 0;
-    for (size_t vertex = 0; vertex < surfaces_.positions.size(); ++vertex) {
+    for (size_t n = 0; n < count; ++n) {
       for (const Part& part : parts) {
-        if (part.attribute.empty()) {
-          words.push_back(part.bits);
-        } else if (part.attribute == "position") {
-          append_words(words, surfaces_.positions[vertex]);
-        } else if (part.attribute == "normal") {
-          append_words(words, surfaces_.normals[vertex]);
-        } else if (part.attribute == "texcoord") {
-          append_words(words, texcoord(vertex));
-        } else {
-          append_words(words, color(vertex));
-        }
+        if (part.field != nullptr)
+          (*part.field)(n, words);
+        else
+          words.insert(words.end(), part.words.begin(), part.words.end());
       }
-      if (vertex == 0) stride = padded(words.size(), pad_to);
-      words.resize((vertex + 1) * stride);
+      if (n == 0) stride = padded(words.size(), pad_to);
+      words.resize((n + 1) * stride);
     }
     return words;
   }
@@ -291,7 +406,7 @@ class ShaderMemory {
     const size_t bytes = pad_to->whole(4, kMostBytes);
     if (bytes % 4 != 0 || bytes < 4 * size)
       pad_to->fail(
-          fmt::format("is {}; it must be a multiple of 4 and at least the vertex's {} bytes", bytes, 4 * size));
+          fmt::format("is {}; it must be a multiple of 4 and at least the {} bytes of an element", bytes, 4 * size));
     return bytes / 4;
   }
 
@@ -304,6 +419,7 @@ class ShaderMemory {
     if (kind == "positions") return words_of(surfaces_.positions);
     if (kind == "normals") return words_of(surfaces_.normals);
     if (kind == "lights") return words_of(lights_.lights);
+    if (kind == "triangle_materials") return scene_.triangle_materials;
     Words words;
     if (kind == "materials") {
       for (const SurfaceMaterial& material : surfaces_.materials) append_words(words, shader_material(material));
@@ -406,7 +522,8 @@ class ShaderMemory {
   const ShaderValues values_;
   uint64_t end_;  // of what is reserved
   shader::Buffer materials_;
-  std::optional<shader::Textures> textures_;  // of the scene, once they are needed
+  std::optional<shader::Textures> textures_;   // of the scene, once they are needed
+  std::map<std::string, uint32_t> addresses_;  // of buffers that others name, by what they hold
   shader::Resources resources_;
 };
 

@@ -15,6 +15,7 @@
 #include "files/json_text.hpp"
 #include "scene/file_fixture.hpp"
 #include "scene/image_fixture.hpp"
+#include "scene/shader_file.hpp"
 #include "scene/shader_lights.hpp"
 #include "scene/shader_values.hpp"
 
@@ -32,6 +33,7 @@ class DeclaredSet : public shader::ShaderSet {
   const std::string& folder() const override { return folder_; }
   const std::vector<Binding>& bindings() const override { return bindings_; }
   const std::vector<Member>& push_constants() const override { return push_constants_; }
+  const std::vector<shader::ShaderRecord>& shader_records() const override { return records_; }
   bool waits() const override { return false; }
   uint32_t path_words(const std::map<uint32_t, uint32_t>& /*specialization*/) const override { return 0; }
   EnumArray<RayKernel, kernel::Function, kRayKernels> record(const shader::Resources&, const KernelTarget&,
@@ -51,6 +53,7 @@ class DeclaredSet : public shader::ShaderSet {
   }
   std::vector<Binding> bindings_;
   std::vector<Member> push_constants_;
+  std::vector<shader::ShaderRecord> records_;
 
  private:
   std::string folder_;
@@ -62,6 +65,7 @@ Member number(const std::string& name, uint32_t offset, bool is_float = true) {
 Member vector(const std::string& name, uint32_t offset, uint32_t rows = 3) {
   return {name, offset, rows, 1, 1, 4, 0, 0, true};
 }
+Member address(const std::string& name, uint32_t offset) { return {name, offset, 1, 1, 1, 4, 0, 0, false, true}; }
 Member matrix(const std::string& name, uint32_t offset) { return {name, offset, 4, 4, 1, 4, 16, 0, true}; }
 
 Scene square() {
@@ -327,6 +331,109 @@ TEST_F(ShaderMemoryTest, AFileDescribesBuffersOfAnyLayout) {
             (std::map<uint32_t, uint32_t>{{0, 4}, {1, as_bits(0.5f)}, {7, 1}, {8, 0xffffffff}}));
 }
 
+TEST_F(ShaderMemoryTest, AFileDescribesBuffersThatOthersNameByTheirAddresses) {
+  describe(R"({"bindings": [
+    {"binding": 2, "holds": {"words": [7, 0.5, {"address": "triangle_materials"}, {"address": {"integers": [3]}}]}},
+    {"binding": 3, "values": {"scene.vertices": {"address": {"interleaved": ["normal", -1]}}}}],
+    "push_constants": {"numbers": {"address": {"integers": [3]}}}})");
+  DeclaredSet declared = set().add(0, 2, BindingKind::Buffer, "objects");
+  declared.add(0, 3, BindingKind::Block, "b").add_member(address("scene.vertices", 8));
+  declared.push_constants_ = {address("numbers", 0)};
+  const shader::Resources resources = build(full_square(), declared);
+  const std::vector<uint32_t> objects = words(resources.buffers.at({0, 2}));
+  ASSERT_EQ(objects.size(), 6u);
+  EXPECT_EQ(objects[0], 7u);
+  EXPECT_EQ(as_float(objects[1]), 0.5f);
+  EXPECT_EQ(words({objects[2], 8}), (std::vector<uint32_t>{1, 0}));
+  EXPECT_EQ(objects[3], 0u) << "the upper half of an address";
+  EXPECT_EQ(words({objects[4], 4}), (std::vector<uint32_t>{3}));
+  EXPECT_EQ(resources.push_constants.at(0).bits, objects[4]) << "what is alike is there once";
+  EXPECT_EQ(resources.push_constants.at(1).bits, 0u);
+  const std::vector<shader::Word>& block = resources.blocks.at({0, 3});
+  ASSERT_EQ(block.size(), 4u);
+  const std::vector<uint32_t> vertex = words({block[2].bits + 16, 16});
+  EXPECT_EQ(as_float(vertex[0]), 1) << "of the second vertex";
+  EXPECT_EQ(as_float(vertex[3]), -1);
+}
+
+TEST_F(ShaderMemoryTest, AFileDescribesMaterialsOfAnyLayout) {
+  describe(R"({"bindings": [{"binding": 2, "holds": {"pad_to": 96, "materials": [
+    "base_color", "diffuse", "specular", "emission", "metallic", "roughness", "transmission", "ior", "alpha",
+    "alpha_cutoff", "alpha_mode", "illum", 5]}},
+    {"binding": 3, "holds": {"materials": ["base_color_texture", "emission_texture", "metallic_roughness_texture",
+      "shininess"]}}]})");
+  Scene scene = full_square();
+  auto surfaces = std::make_shared<Surfaces>(*scene.surfaces);
+  surfaces->materials[0].metallic = 1;
+  surfaces->materials[0].roughness = 0.0625f;
+  surfaces->materials[1].metallic = 0.5f;
+  surfaces->materials[1].roughness = 0.5f;
+  scene.surfaces = surfaces;
+  const shader::Resources resources =
+      build(scene, set().add(0, 2, BindingKind::Buffer, "a").add(0, 3, BindingKind::Buffer, "b"));
+  const std::vector<uint32_t> all = words(resources.buffers.at({0, 2}));
+  ASSERT_EQ(all.size(), 48u);
+  std::vector<float> second;
+  for (size_t i = 24; i < 24 + 19; ++i) second.push_back(as_float(all[i]));
+  EXPECT_EQ(second,
+            (std::vector<float>{1, 2, 3, 4, 0.5f, 1, 1.5f, 0.52f, 1.02f, 1.52f, 5, 6, 7, 0.5f, 0.5f, 10, 11, 4, 12}));
+  EXPECT_EQ(std::vector<uint32_t>(all.begin() + 43, all.end()), (std::vector<uint32_t>{2, 4, 5, 0, 0}));
+  EXPECT_EQ(all[20], 3u) << "a smooth metal is a mirror of MTL";
+  const std::vector<uint32_t> textures = words(resources.buffers.at({0, 3}));
+  EXPECT_EQ(std::vector<uint32_t>(textures.begin() + 4, textures.begin() + 7), (std::vector<uint32_t>{1, 2, 0}));
+  EXPECT_EQ(as_float(textures[7]), 30) << "2 / 0.5^4 - 2";
+}
+
+TEST_F(ShaderMemoryTest, AFileHasTheTableOfShadersAndTheirRecords) {
+  describe(R"({"ray_generation": {"shader": "b.rgen", "record": {"color": [1, 2, 3]}},
+    "miss": ["z.rmiss", {"shader": "a.rmiss", "record": {"weight": 4, "eye": "light_position"}}],
+    "hit_groups": [{"closest_hit": "a.rchit", "any_hit": "b.rahit"}, {"any_hit": "c.rahit", "record": {"weight": 5}}],
+    "callable": ["sun.rcall"], "geometries": "materials"})");
+  const ShaderFile file(folder_);
+  const shader::ShaderTable table = file.table();
+  EXPECT_EQ(table.ray_generation, "b.rgen");
+  EXPECT_EQ(table.misses, (std::vector<std::string>{"z.rmiss", "a.rmiss"}));
+  EXPECT_EQ(table.callables, std::vector<std::string>{"sun.rcall"});
+  ASSERT_EQ(table.hit_groups.size(), 2u);
+  EXPECT_EQ(table.hit_groups[0].any_hit, "b.rahit");
+  EXPECT_EQ(table.hit_groups[1].closest_hit, "");
+  EXPECT_TRUE(file.geometries_are_materials());
+  DeclaredSet declared = set();
+  declared.records_ = {{{shader::RecordStage::RayGeneration, 0}, "b.rgen", {vector("color", 0)}, 12},
+                       {{shader::RecordStage::Miss, 1}, "a.rmiss", {number("weight", 0), vector("eye", 4)}, 16},
+                       {{shader::RecordStage::HitGroup, 1}, "c.rahit", {number("weight", 4)}, 8}};
+  const shader::Resources resources = build(full_square(), declared);
+  EXPECT_EQ(as_float(resources.records.at({shader::RecordStage::RayGeneration, 0}).at(2).bits), 3);
+  EXPECT_EQ(as_float(resources.records.at({shader::RecordStage::Miss, 1}).at(0).bits), 4);
+  EXPECT_EQ(as_float(resources.records.at({shader::RecordStage::Miss, 1}).at(3).bits), 3) << "the light's z";
+  EXPECT_EQ(as_float(resources.records.at({shader::RecordStage::HitGroup, 1}).at(1).bits), 5);
+  EXPECT_EQ(resources.geometries, image_.material_base);
+  declared.records_ = {{{shader::RecordStage::Callable, 0}, "sun.rcall", {number("power", 0), number("size", 4)}, 8}};
+  expect_refusal(declared, "shader record 0 of sun.rcall: members 'power', 'size' have no value: give them some");
+}
+
+TEST_F(ShaderMemoryTest, MistakesInTheTableAreNamedWithTheirPlace) {
+  const auto refused = [&](const std::string& json, const std::string& part) {
+    describe(json);
+    const std::string message = refusal([&] { const ShaderFile file(folder_); });
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  refused(R"({"hit_groups": [{"closest": "a.rchit"}]})",
+          "hit_groups[0] has the unknown key 'closest': did you mean closest_hit?");
+  refused(R"({"miss": ["a.rmiss", {"record": {}}]})", "miss[1] has no 'shader'");
+  refused(R"({"callable": [7]})", "callable[0] is 7");
+  refused(R"({"geometries": "objects"})", "geometries must be \"materials\"");
+  refused(R"({"ray_generation": {"shader": "a.rgen", "values": {}}})", "ray_generation has the unknown key 'values'");
+  describe(R"({"push_constants": {}})");
+  DeclaredSet declared = set();
+  declared.push_constants_ = {address("numbers", 0)};
+  expect_refusal(declared, "member 'numbers' is the address of a buffer: say in");
+  describe(R"({"push_constants": {"numbers": 7}})");
+  expect_refusal(declared, "push_constants.numbers is 7");
+  describe(R"({"bindings": [{"binding": 2, "holds": {"materials": ["colour"]}}]})");
+  expect_refusal(set().add(0, 2, BindingKind::Buffer, "b"), "is 'colour', which is nothing of a material");
+}
+
 TEST_F(ShaderMemoryTest, WhatIsNotKnownIsAskedForByNameOfSetBindingAndMember) {
   expect_refusal(set().add(2, 1, BindingKind::Buffer, "Vertices"),
                  "set 2, binding 1 ('Vertices') is a buffer that raypool.glsl does not declare: say in");
@@ -367,7 +474,7 @@ TEST_F(ShaderMemoryTest, WhatIsNotKnownIsAskedForByNameOfSetBindingAndMember) {
   refused(binding(R"("holds": "position")"), buffer, "is 'position', which is no buffer: did you mean positions?");
   refused(binding(R"("holds": {"interleaved": ["tangent"]})"), buffer, "is 'tangent', which is nothing of a vertex");
   refused(binding(R"("holds": {"interleaved": ["position"], "pad_to": 8})"), buffer,
-          "must be a multiple of 4 and at least the vertex's 12 bytes");
+          "must be a multiple of 4 and at least the 12 bytes of an element");
   refused(binding(R"("holds": {"floats": [1], "integers": [1]})"), buffer, "must have one of");
   refused(binding(R"("holds": {"integers": [0.5]})"), buffer, "must be a whole number");
   refused(binding(R"("holds": {"images": ["../wood.png"]})"), set().add(0, 2, BindingKind::Textures),

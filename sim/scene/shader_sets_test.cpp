@@ -6,6 +6,7 @@
 #include "bits.hpp"
 #include "kernel/function_runner.hpp"
 #include "scene/native_renderer.hpp"
+#include "scene/shader_file.hpp"
 #include "scene/shader_memory.hpp"
 #include "shader/shader_set.hpp"
 
@@ -36,7 +37,7 @@ FrameBuffer built_in(const Scene& scene, const Drawing& drawing) {
 FrameBuffer drawn_by(const std::string& set_name, const Scene& scene, const Drawing& drawing) {
   MemoryImage image = build_memory(ray_kernel_program(), scene);
   const Tracer tracer(scene, image.material_base);
-  const auto set = shader::ShaderSet::load(set_name);
+  const auto set = load_shaders(set_name);
   NativeOptions options = options_of(drawing);
   ShaderFrame shader_frame;
   shader_frame.width = shader_frame.height = kSize;

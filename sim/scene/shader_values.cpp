@@ -132,7 +132,8 @@ std::string value_of_member(const std::string& member, const ShaderValues& value
                                                              {"projectioninverse", "inverse_projection"},
                                                              {"inverseproj", "inverse_projection"},
                                                              {"viewproj", "view_projection"}};
-  const std::string name = plain(member);
+  // Of a struct inside of a block, its own name.
+  const std::string name = plain(member.substr(member.rfind('.') + 1));
   const auto other = kOthers.find(name);
   if (other != kOthers.end()) return other->second;
   const auto found =

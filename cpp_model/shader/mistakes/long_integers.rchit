@@ -9,6 +9,6 @@ layout(location = 1) rayPayloadEXT vec3 light;
 hitAttributeEXT RaypoolHit hit;
 
 void main() {
-  const uint64_t product = uint64_t(hit.material) * 3ul;  // here
-  light = vec3(float(product));
+  const uint64_t product = uint64_t(hit.material) * 3ul; 
+  light = vec3(float(product));  // here
 }
