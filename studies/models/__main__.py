@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import sys
 
-from .document import ROOT
+from . import ROOT
 from .sheet import compare, contact_sheet, side_by_side
 from .ten import MODELS
 
@@ -96,7 +96,7 @@ def main():
         side_by_side(ours, theirs).save(out / f"{name}.png")
         side_by_side(ours, with_lambert).save(out / f"{name}-lambert.png")
         if len(pairs) == 1:
-            print(f"{'':<12} {'raypool':>7} {'Cycles':>7} {'light':>6} {'pixels':>6} {'blocks':>6} {'Lambert':>7} "
+            print(f"{'model':<12} {'raypool':>7} {'Cycles':>7} {'light':>6} {'pixels':>6} {'blocks':>6} {'Lambert':>7} "
                   f"{'light':>6} {'pixels':>6} {'blocks':>6}")
         print_row(name, ours, theirs, with_lambert)
     if pairs:

@@ -4,13 +4,9 @@ import io
 import json
 import pathlib
 import struct
-import sys
 
+from make_scenes import Document, Mesh, turned
 from PIL import Image
-
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "examples/scenes"))
-from make_scenes import Document, Mesh, turned  # noqa: E402
 
 REPEAT, CLAMP, MIRROR = 10497, 33071, 33648
 NEAREST, LINEAR = 9728, 9729

@@ -2,9 +2,9 @@
 import math
 import struct
 
-from make_scenes import Mesh, cross, layered, limited, scaled, sub, turned, unit
+from make_scenes import Mesh, add, cross, layered, limited, scaled, sub, turned, unit
 
-from models.document import CLAMP, FAN, MIRROR, REPEAT, STRIP, Model, Picture, downwards
+from .document import CLAMP, FAN, MIRROR, REPEAT, STRIP, Model, Picture, downwards
 
 
 def blend(a, b, share):
@@ -164,16 +164,16 @@ def window():
     frame = model.material("lead", (0.16, 0.17, 0.19), metallic=1, roughness=0.5)
     colors = [(0.9, 0.15, 0.1), (0.95, 0.7, 0.15), (0.15, 0.55, 0.25), (0.15, 0.3, 0.85)]
     for i, color in enumerate(colors):
-        x, low = -1.3 + 0.55 * (i % 2), 0.1 + 0.62 * (i // 2)
+        x, low, width = (-1.29, -0.74)[i % 2], 0.11 + 0.62 * (i // 2), (0.48, 0.43)[i % 2]
         if i < 2:
             material = model.material(f"glass {i}", color, roughness=0, glass=1.0)
-            model.add(f"pane {i}", Mesh().box((x, low, -0.03), (x + 0.5, low + 0.57, 0.03)), material)
+            model.add(f"pane {i}", Mesh().box((x, low, -0.03), (x + width, low + 0.55, 0.03)), material)
         else:
             material = model.material(f"film {i}", (*color, 0.5), roughness=0.9, alphaMode="BLEND", doubleSided=True)
-            model.add(f"pane {i}", Mesh().quad((x, low, 0), (0.5, 0, 0), (0, 0.57, 0)), material)
+            model.add(f"pane {i}", Mesh().quad((x, low, 0), (width, 0, 0), (0, 0.55, 0)), material)
     for low, high in (((-1.38, 0, -0.05), (-0.22, 0.1, 0.05)), ((-1.38, 1.29, -0.05), (-0.22, 1.38, 0.05)),
                       ((-1.38, 0.1, -0.05), (-1.3, 1.29, 0.05)), ((-0.3, 0.1, -0.05), (-0.22, 1.29, 0.05)),
-                      ((-0.8, 0.1, -0.05), (-0.75, 1.29, 0.05)), ((-1.3, 0.67, -0.05), (-0.3, 0.72, 0.05))):
+                      ((-0.8, 0.1, -0.05), (-0.75, 1.29, 0.05)), ((-1.3, 0.67, -0.04), (-0.3, 0.72, 0.04))):
         model.add("bar", Mesh().box(low, high), frame)
     clear = model.material("crystal", roughness=0, glass=1.0, ior=1.5)
     dense = model.material("diamond", roughness=0, glass=1.0, ior=2.0)
@@ -339,10 +339,20 @@ def room():
     model.add("stool", Mesh().lathe([(0.24, 0), (0.24, 0.45), (0.24, 0.45), (0, 0.45)], 32), blue, (-0.9, 0, 0.3))
     model.light("bulb", "point", (1, 0.8, 0.55), 1.6, place=(0.5, 2.2, -0.4))
     model.light("spot", "spot", (0.8, 0.9, 1), 12, place=(1.6, 2.4, 1.4), rotation=downwards(30, 45),
-                cone=(0.2, 0.42))
+                cone=(0.38, 0.42))
     model.light("sun", "directional", (1, 0.9, 0.7), 5, rotation=downwards(-78, 38))
     model.camera("camera", (0.25, 1.45, 5.0), (0, 1.1, 0), 36)
     return model
+
+
+def smooth_normals(mesh, moved):
+    """Of the vertices when each is at `moved` of its place: those of the triangles, by their areas."""
+    sums = {p: (0.0, 0.0, 0.0) for p in mesh.positions}
+    for triangle in mesh.triangles:
+        a, b, c = (moved(mesh.positions[i]) for i in triangle)
+        for i in triangle:
+            sums[mesh.positions[i]] = add(sums[mesh.positions[i]], cross(sub(b, a), sub(c, a)))
+    return [unit(sums[p]) for p in mesh.positions]
 
 
 def everything():
@@ -378,8 +388,10 @@ def everything():
 
     def target(moved):
         moves = [sub(moved(p), p) for p in ball.positions]
+        turns = [sub(b, a) for a, b in zip(ball.normals, smooth_normals(ball, moved))]
         return {"POSITION": model.values(moves, "VEC3", min=[min(m[i] for m in moves) for i in range(3)],
-                                         max=[max(m[i] for m in moves) for i in range(3)])}
+                                         max=[max(m[i] for m in moves) for i in range(3)]),
+                "NORMAL": model.values(turns, "VEC3")}
 
     def bump(p):
         return (p[0], p[1] + 0.5 * math.exp(-25 * (p[0]**2 + p[2]**2)) * (p[1] > 0), p[2])
