@@ -1,6 +1,7 @@
 # What is studied with the machine. The Makefile includes it behind its own variables: those of a frame, the program,
 # and `options`.
-.PHONY: fidelity intervals pareto fit sweep report numerics significands boxes triangles referee convergence extremes
+.PHONY: fidelity intervals pareto fit sweep report numerics significands boxes triangles referee convergence models
+.PHONY: extremes
 
 SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=studies $(PYTHON) -m sweep
 SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
@@ -97,6 +98,13 @@ referee: setup-sim setup-test configured-ON ## hits of hard rays beside rational
 convergence: setup-sim setup-test configured-ON ## pictures of SHADERS=path beside a path tracer in double precision
 	@scripts/build.sh $(BUILD) raypool_converge
 	@$(BUILD)/raypool_converge $(call options,SPP) $(ARGS)
+
+#: variables of make models: SIZE, DEPTH, THREADS, OUT
+#:   SPP=N                         samples a pixel; of Cycles 4 N              64
+#:   ARGS="--only crate vase ..."
+models: setup-sim setup-models program ## ten glTF models by SHADERS=path beside Blender's Cycles
+	@RAYPOOL=$(abspath $(RAYPOOL)) PYTHONPATH=studies $(PYTHON) -m models \
+	  $(call options,$(call said,SIZE DEPTH THREADS OUT) SPP) $(ARGS)
 
 EXTREMES = $(RAYPOOL) numerics $(call options,MODE) $(if $(filter chip,$(BOUNDARY)),--config tiny)
 

@@ -787,4 +787,5 @@ def main():
         scene(folder)
 
 
-main()
+if __name__ == "__main__":
+    main()

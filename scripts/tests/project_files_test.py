@@ -117,7 +117,7 @@ class Image(unittest.TestCase):
     def test_it_has_the_groups_that_targets_set_up(self):
         self.assertEqual(self.groups - GROUPS, set())
         wanted = set(re.findall(r"setup-([a-z]+)", MAKEFILE))
-        self.assertEqual(wanted - self.groups, {"slurm"})
+        self.assertEqual(wanted - self.groups, {"slurm", "models"})
 
     def test_it_is_given_the_files_that_it_copies_and_no_others(self):
         copied = re.search(r"^COPY (.*) \S+$", self.dockerfile, re.M)[1].split()
