@@ -23,6 +23,8 @@ RUN_FIELDS = {
     "engine": "model",
     "boundary": "",
     "hits": "",
+    "shaders": "",
+    "samples": 1,
 }
 
 
@@ -66,7 +68,8 @@ class Experiment:
                         "(raypool config prints those of the machine)"
                     )
                 for each in value if isinstance(value, list) else [value]:
-                    if isinstance(each, str) and field not in ("scene", "view", "config") and each.split() != [each]:
+                    named = field in ("scene", "view", "config", "shaders")
+                    if isinstance(each, str) and not named and each.split() != [each]:
                         raise SweepError(f"{self.path}: {place}: {field} is '{each}'; it must be one word")
         twice = next((field for point in self.listed for field in point if field in self.product), None)
         if twice:
@@ -81,11 +84,12 @@ class Experiment:
                 point["scene"] = scenes.find(str(point["scene"]), folder)
             except SweepError as error:
                 raise SweepError(f"{self.path}: {error}") from error
-        for field in ("view", "config"):
+        for field in ("view", "config", "shaders"):
             value = str(point[field])
             is_file = {
                 "view": value != "",
                 "config": value.endswith(".json") or "/" in value,
+                "shaders": "/" in value,
             }[field]
             point[field] = os.path.normpath(os.path.join(folder, value)) if is_file else value
         return point

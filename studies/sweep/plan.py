@@ -115,6 +115,28 @@ class Plan:
                 raypool.ask("sim", "cornell", "--detail=0.01", *engine(planned), *how)
 
         self.each_once("engines checked", engine, check_engine)
+        self.check_shaders()
+
+    def check_shaders(self):
+        """Each set once, on each machine and at each depth, by drawing a pixel."""
+
+        def identity(planned):
+            point = planned.point
+            return (point["shaders"], point["config"], *planned.settings.items(),
+                    *(text(point[field]) for field in ("depth", "units", "samples")))  # fmt: skip
+
+        def check(planned):
+            point = planned.point
+            if point["shaders"] == "" and point["samples"] == 1:
+                return
+            words = [f"--{field}={text(point[field])}" for field in ("depth", "units", "samples")]
+            words += ["--shaders", point["shaders"]] if point["shaders"] else []
+            with tempfile.TemporaryDirectory() as out:
+                raypool.ask("sim", *raypool.machine_words(point["config"], planned.settings), "--scene=cornell",
+                            "--detail=0.01", "--engine=native", "--size=1x1", "--quiet", f"--out={out}",
+                            *words)  # fmt: skip
+
+        self.each_once("shader sets checked", identity, check)
 
     def check_scenes(self):
         def check(planned):
@@ -227,6 +249,7 @@ class Plan:
             files += scenes.files_of(point["scene"])
         files += [point["view"]] if point["view"] else []
         files += [planned.unit] if planned.unit else []
+        files += raypool.files_of_shaders(point["shaders"])
         words += [f"--unit-library={planned.unit}"] if planned.unit else []
         depends_on = {
             "program": self.program,

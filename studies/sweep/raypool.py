@@ -44,6 +44,16 @@ def digest_of_file(path):
         return hashlib.sha256(file.read()).hexdigest()
 
 
+def files_of_shaders(shaders):
+    """A shader set's files, and those that every set may include."""
+    if shaders == "":
+        return []
+    own = os.path.join(ROOT, "shaders")
+    folder = shaders if os.path.isdir(shaders) else os.path.join(own, shaders)
+    files = [os.path.join(place, name) for place, _, names in os.walk(folder) for name in names]
+    return sorted([*files, *(os.path.join(own, name) for name in os.listdir(own) if name.endswith(".glsl"))])
+
+
 def machine_words(config, settings):
     """The options that name a machine."""
     return [f"--config={config}", *(f"--set={field}={value}" for field, value in settings.items())]

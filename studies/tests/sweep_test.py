@@ -185,6 +185,8 @@ class Refusals(SweepTest):
             ("boundary", "chip", "engine model has no Verilog"),
             ("hits", "embree", "engine model has the hits of its traverser"),
             ("detail", 0, "detail"),
+            ("shaders", "debgu", "debgu"),
+            ("samples", 2, "give --shaders too"),
             ("scene", "none.obj", "none.obj"),
             ("view", "none.json", "none.json"),
         ):
@@ -411,6 +413,21 @@ class Runs(SweepTest):
         reports = [json.loads((self.out / "points" / row["key"] / "report.json").read_text()) for row in rows]
         self.assertEqual([(report.get("hits"), report.get("boundary")) for report in reports],
                          [("embree", None), (None, None), (None, "chip")])  # fmt: skip
+
+    def test_shader_sets_are_those_of_the_point_and_of_today(self):
+        own = self.folder / "mine"
+        shutil.copytree(ROOT / "shaders" / "debug", own)
+        document = {"base": {**TINY, "config": "4w4c"}, "product": {"shaders": ["debug", "./mine"], "samples": [1, 2]}}
+        self.run_sweep(document)
+        rows = self.rows()
+        self.assertEqual([row["shaders.samples"] for row in rows], [1, 2, 1, 2])
+        self.assertEqual(rows[0]["picture"], rows[2]["picture"])
+        before = self.finished()
+        self.assertEqual(len(before), 4)
+        shader = next(own.glob("*.rmiss"), None) or next(own.glob("*.rgen"))
+        shader.write_text(shader.read_text() + "// changed\n")
+        self.run_sweep(document)
+        self.assertEqual(len(self.finished() - before), 2)
 
     def test_an_interrupt_while_machines_are_checked_does_not_wait_for_the_rest(self):
         self.write({"base": TINY, "product": {"chip.memory.latency": list(range(1, 1001))}})
