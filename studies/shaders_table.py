@@ -24,7 +24,8 @@ def main():
         table = json.load(file)
     width, height = (int(side) for side in table["base"]["size"].split("x"))
     form = "{:<10}{:<9}{:<11}{:>5}{:>9}{:>15}  {:<26}{:>7}  {}"
-    print(form.format("scene", "set", "machine", "units", "Mrays/s", "cycles/sample", "lowest ceiling", "of it", "next"))
+    print(form.format("scene", "set", "machine", "units", "Mrays/s", "cycles/sample", "lowest ceiling", "of it",
+                      "next"))  # fmt: skip
     for row in table["rows"]:
         (lowest, name), (then, following) = ceilings(row)[:2]
         scene = os.path.splitext(os.path.basename(row["scene"]))[0]

@@ -58,7 +58,8 @@ kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& r
                                const KernelTarget& target, const RecordLayout& layout = {});
 
 /// Words of a path's record: those of a payload that a ray has no room for, then what each stage holds across traces.
-uint32_t path_words(const WaitingShaders& shaders);
+/// `levels`: Resources::levels.
+uint32_t path_words(const WaitingShaders& shaders, uint32_t levels);
 
 /// A contribution that waits to leave.
 struct Stored {
@@ -75,6 +76,10 @@ struct Path {
   /// Contributions that leave at the end: a lane runs one shader of each stage.
   std::map<spv::ExecutionModel, std::vector<Stored>> stored;
   Scalar record;  ///< a register: where the path's record lies behind Resources::saved, bytes
+  /// Where closest-hit shaders wait for each other: registers with how many of the path wait and with the trace that
+  /// has called, and of the lanes that have just come a predicate.
+  std::optional<Scalar> level, caller;
+  std::optional<int> fresh;
   /// Predicate: the hit does not count, and the ray goes on behind it. None: all hits count.
   std::optional<int> ignored;
 };
@@ -109,6 +114,8 @@ class Lowering {
   void run_any_hit(const AnyHitShader& shader);
   void pass_on();
   void give_back_unread();
+  void begin_calls();
+  void end_calls();
   Scalar goes_to_miss(uint32_t index);
   Scalar called_by_hit(const std::vector<uint32_t>& groups);
   /// Lanes of `starts` begin the shader, others go on behind its sites. `first_word`: of the path's record, for what
@@ -189,6 +196,8 @@ class Lowering {
 
   // lowering_paths.cpp: what rays and records take along
   bool goes_to_no_closest_hit(const Line& line);
+  bool waits_on_a_level() const;
+  Scalar place_held();
   void send(const Line& line, const TraceSite& site);
   void go_on(const TraceSite& site);
   void take_payload_back(const Line& line);
@@ -197,6 +206,8 @@ class Lowering {
   template <typename Visit>
   void for_each_held(const TraceSite& site, const Visit& visit);
   Scalar from_word(const Scalar& word, bool is_condition);
+  Scalar word_at(const Scalar& place, uint32_t number);
+  void put_word_at(const Scalar& place, uint32_t number, const Scalar& value);
   Scalar record_word(uint32_t number);
   void put_record_word(uint32_t number, const Scalar& value);
   /// Payload of a ray that has come, and what goes back to who has traced it.

@@ -60,13 +60,6 @@ uint32_t payload_words(const WaitingShaders& shaders) {
   return most - std::min(most, kPayloadInRay);
 }
 
-// Words of a path's record: those of the payload, how far along the ray has begun, what the ray generation shader
-// holds, and what a closest-hit shader holds.
-uint32_t begin_word(const WaitingShaders& shaders) { return payload_words(shaders); }
-uint32_t first_held_word(const WaitingShaders& shaders) {
-  return payload_words(shaders) + (records_begin(shaders) ? 1 : 0);
-}
-
 bool has_incoming_payload(const Module& module) {
   return std::any_of(module.variables().begin(), module.variables().end(),
                      [](const auto& one) { return one.second.storage == spv::StorageClass::IncomingRayPayloadKHR; });
@@ -77,6 +70,13 @@ uint32_t words_of_hit(const WaitingShaders& shaders, const WaitingShader& shader
   if (shader.waits.sites.empty()) return 0;
   const uint32_t passed = has_incoming_payload(shader.module) ? 0 : most_payload(shaders);
   return most_held_words(shader.module, shader.waits) + 1 + passed;
+}
+
+/// Words that a closest-hit shader that waits takes.
+uint32_t words_of_level(const WaitingShaders& shaders) {
+  uint32_t most = 0;
+  for (const ClosestHitShader& hit : shaders.closest_hits) most = std::max(most, words_of_hit(shaders, hit.shader));
+  return most;
 }
 
 std::vector<uint32_t> groups_without_closest_hit(const WaitingShaders& shaders) {
@@ -90,6 +90,26 @@ std::vector<uint32_t> groups_without_closest_hit(const WaitingShaders& shaders) 
   return without;
 }
 
+/// Whether closest-hit shaders may wait for each other.
+bool nests(const WaitingShaders& shaders) {
+  const std::vector<uint32_t> without = groups_without_closest_hit(shaders);
+  for (const ClosestHitShader& hit : shaders.closest_hits) {
+    for (const TraceSite& site : hit.shader.waits.sites) {
+      if ((flags_of(hit.shader.module, site) & ray_flag::kSkipsClosestHit) != 0) continue;
+      const auto group = hit.shader.module.constant(site.line->operands.at(3));
+      if (!group || std::find(without.begin(), without.end(), *group) == without.end()) return true;
+    }
+  }
+  return false;
+}
+
+// Words of a path's record: those of the payload, how far along the ray has begun, how many closest-hit shaders wait if
+// they may wait for each other, what the ray generation shader holds, and what each closest-hit shader that waits
+// holds.
+uint32_t begin_word(const WaitingShaders& shaders) { return payload_words(shaders); }
+uint32_t level_word(const WaitingShaders& shaders) { return payload_words(shaders) + (records_begin(shaders) ? 1 : 0); }
+uint32_t first_held_word(const WaitingShaders& shaders) { return level_word(shaders) + (nests(shaders) ? 1 : 0); }
+
 /// Words of the ray that hold scalars 3 .. 9 of what a shader gives back: nobody needs its origin and direction then.
 bool goes_back_in_word(uint32_t scalar) { return scalar < kPayloadInRay + word::kPixel; }
 int word_back(uint32_t scalar) {
@@ -98,12 +118,10 @@ int word_back(uint32_t scalar) {
 
 }  // namespace
 
-uint32_t path_words(const WaitingShaders& shaders) {
-  uint32_t of_hits = 0;
-  for (const ClosestHitShader& hit : shaders.closest_hits)
-    of_hits = std::max(of_hits, words_of_hit(shaders, hit.shader));
+uint32_t path_words(const WaitingShaders& shaders, uint32_t levels) {
   const WaitingShader& first = shaders.ray_generation;
-  return first_held_word(shaders) + most_held_words(first.module, first.waits) + of_hits;
+  const uint32_t before = first_held_word(shaders) + most_held_words(first.module, first.waits);
+  return before + words_of_level(shaders) * (nests(shaders) ? levels : 1);
 }
 
 kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& resources, RayKernel kernel,
@@ -112,7 +130,7 @@ kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& r
   const bool comes_back = kernel != RayKernel::CastEye;
   const WaitingShader& first = shaders.ray_generation;
   Lowering begin(first.module, resources, RayKernel::CastEye, recording);
-  recording.path.emplace(Path{shaders, comes_back, {}, 0, {}, {}, {}});
+  recording.path.emplace(Path{shaders, comes_back, {}, 0, {}, {}, {}, {}, {}, {}});
   const Scalar inside = begin.begin_paths();
   const uint32_t of_begin = first_held_word(shaders);
   const uint32_t of_hits = of_begin + most_held_words(first.module, first.waits);
@@ -124,6 +142,7 @@ kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& r
       begin.pass_on();
     }
     begin.give_back_unread();
+    begin.begin_calls();
     for (uint32_t i = 0; i < shaders.misses.size(); ++i) {
       Lowering miss(shaders.misses[i].module, resources, RayKernel::Shade, recording);
       miss.run_waiting(shaders.misses[i].waits, miss.goes_to_miss(i), of_hits);
@@ -132,6 +151,7 @@ kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& r
       Lowering hit(shader.module, resources, RayKernel::CastSecondary, recording);
       hit.run_waiting(shader.waits, hit.called_by_hit(groups), of_hits);
     }
+    begin.end_calls();
   }
   begin.run_waiting(first.waits, inside, of_begin);
   return begin.end_paths();
@@ -162,7 +182,35 @@ Scalar Lowering::begin_paths() {
   for (const ClosestHitShader& hit : path_->shaders.closest_hits) declare_stored(hit.shader.module);
   for (const AnyHitShader& shader : path_->shaders.any_hits) declare_stored(shader.module);
   path_->site = copy(immediate(Opcode::And, immediate(Opcode::Shr, *flags_, kSiteShift), kSiteMask));
+  if (nests(path_->shaders)) path_->level = copy(record_word(level_word(path_->shaders)));
   return inside;
+}
+
+/// Where closest-hit shaders wait for each other, one that has ended may go back to one that has been recorded before
+/// it: all of them are in a loop, as long as there are such.
+void Lowering::begin_calls() {
+  if (!path_->level) return;
+  path_->fresh = recorder_.declare_predicate();
+  recorder_.join(*path_->fresh);
+  // Behind the trace that has called nobody goes on yet.
+  path_->caller = copy(path_->site);
+  Scalar calls = Scalar::constant(0);
+  for (uint32_t i = 0; i < path_->shaders.misses.size(); ++i) calls = either(calls, goes_to_miss(i));
+  for (const ClosestHitShader& hit : path_->shaders.closest_hits) calls = either(calls, called_by_hit(hit.groups));
+  under(calls, [&] { assign(path_->site, Scalar::constant(0)); });
+  const int again = recorder_.declare_predicate();
+  recorder_.join(again);
+  recorder_.begin_loop(again, where_);
+}
+
+void Lowering::end_calls() {
+  if (!path_->level) return;
+  Scalar goes_on = Scalar::constant(0);
+  for (const ClosestHitShader& hit : path_->shaders.closest_hits)
+    for (const TraceSite& site : hit.shader.waits.sites)
+      goes_on = either(goes_on, compare(Opcode::Ieq, path_->site, Scalar::constant(site.number)));
+  recorder_.assign_predicate(*path_->fresh, predicate(Scalar::constant(0)), false);
+  recorder_.end_loop(predicate(copy(goes_on)), false);
 }
 
 /// Places for what the shader stores, which shaders of its stage share.
@@ -184,7 +232,8 @@ Scalar Lowering::has_flag(uint32_t flag) {
 
 /// Rays that were sent to the miss shader of this index, and have met nothing.
 Scalar Lowering::goes_to_miss(uint32_t index) {
-  const Scalar missed = inverse(has_flag(kMetFlag));
+  Scalar missed = inverse(has_flag(kMetFlag));
+  if (path_->fresh) missed = both(missed, Scalar::in_predicate(*path_->fresh));
   if (path_->shaders.misses.size() == 1) return missed;
   const Scalar its = immediate(Opcode::And, immediate(Opcode::Shr, *flags_, kMissShift), kIndexMask);
   return both(compare(Opcode::Ieq, its, Scalar::constant(index)), missed);
@@ -208,7 +257,8 @@ Scalar Lowering::goes_to_groups(const std::vector<uint32_t>& groups) {
 }
 
 Scalar Lowering::called_by_hit(const std::vector<uint32_t>& groups) {
-  const Scalar called = both(goes_to_groups(groups), inverse(has_flag(kNoClosestHit)));
+  Scalar called = both(goes_to_groups(groups), inverse(has_flag(kNoClosestHit)));
+  if (path_->fresh) called = both(called, Scalar::in_predicate(*path_->fresh));
   return path_->ignored ? both(called, Scalar::in_predicate(*path_->ignored, true)) : called;
 }
 
@@ -318,6 +368,12 @@ void Lowering::store_later(const Value& place, const Value& colour) {
   }
   const auto stored = path_->stored.find(module_.stage());
   if (stored == path_->stored.end()) fail("a callable shader writes to the picture: give the colour to its caller");
+  if (path_->level && module_.stage() == spv::ExecutionModel::ClosestHitKHR) {
+    fail(
+        "imageStore is called in a closest-hit shader, and such shaders wait for each other: give the colour back in "
+        "the "
+        "payload, and store in the ray generation shader");
+  }
   std::vector<Stored>& all = stored->second;
   // Each adds to the picture on its own: what is below zero adds nothing.
   Stored& its = all.at(stores_++);
@@ -333,15 +389,27 @@ Scalar Lowering::from_word(const Scalar& word, bool is_condition) {
   return is_condition ? compare(Opcode::Ine, word, Scalar::constant(0)) : word;
 }
 
-Scalar Lowering::record_word(uint32_t number) {
+Scalar Lowering::word_at(const Scalar& place, uint32_t number) {
   const uint32_t offset = resources_.saved + 4 * number;
-  return of(k_.load_int(as_int(path_->record), static_cast<int>(offset)));
+  return of(k_.load_int(as_int(place), static_cast<int>(offset)));
 }
 
-void Lowering::put_record_word(uint32_t number, const Scalar& value) {
+void Lowering::put_word_at(const Scalar& place, uint32_t number, const Scalar& value) {
   if (value.is_undefined()) return;
   const uint32_t offset = resources_.saved + 4 * number;
-  k_.store(as_int(path_->record), static_cast<int>(offset), as_int(value));
+  k_.store(as_int(place), static_cast<int>(offset), as_int(value));
+}
+
+Scalar Lowering::record_word(uint32_t number) { return word_at(path_->record, number); }
+void Lowering::put_record_word(uint32_t number, const Scalar& value) { put_word_at(path_->record, number, value); }
+
+/// Of a closest-hit shader, of which several of a path may wait.
+bool Lowering::waits_on_a_level() const { return path_->level && kernel_ == RayKernel::CastSecondary; }
+
+/// Where the shader's held words are counted from.
+Scalar Lowering::place_held() {
+  if (!waits_on_a_level()) return path_->record;
+  return binary(Opcode::Iadd, path_->record, scaled(*path_->level, 4 * words_of_level(path_->shaders)));
 }
 
 Scalar Lowering::payload_scalar(uint32_t number) {
@@ -399,11 +467,12 @@ void Lowering::give_back_unread() {
 template <typename Of>
 Scalar Lowering::of_site(const Of& of) {
   Scalar all;
+  const Scalar caller = path_->caller.value_or(path_->site);
   for_each_site(path_->shaders, [&](const Module& module, const TraceSite& site) {
     const Scalar its = Scalar::constant(of(module, site));
     all = all.is_undefined() || all == its
               ? its
-              : select(compare(Opcode::Ieq, path_->site, Scalar::constant(site.number)), its, all);
+              : select(compare(Opcode::Ieq, caller, Scalar::constant(site.number)), its, all);
   });
   return all;
 }
@@ -455,7 +524,7 @@ void Lowering::run_waiting(const Waits& waits, const Scalar& starts, uint32_t fi
   first_word_ = first_word;
   constants();
   const bool is_called = kernel_ != RayKernel::CastEye;
-  if (is_called && !waits.sites.empty()) return_ = copy(path_->site);
+  if (is_called && (path_->caller || !waits.sites.empty())) return_ = copy(path_->caller.value_or(path_->site));
   if (is_called && !has_incoming_payload(module_))
     for (uint32_t i = 0; i < most_payload(path_->shaders); ++i) passed_.push_back(copy(payload_scalar(i)));
   declare_held();
@@ -506,11 +575,6 @@ void Lowering::send(const Line& line, const TraceSite& site) {
   const bool all_count = !asks && (flags & (ray_flag::kCullsBack | ray_flag::kCullsFront)) == 0;
   if (kernel_ == RayKernel::Shade)
     fail("a miss shader traces a ray: trace it in the shader that its payload comes from");
-  if (kernel_ == RayKernel::CastSecondary && !skips) {
-    fail(
-        "a closest-hit shader traces a ray that may come to a closest-hit shader, and waits for it: trace such rays in "
-        "a loop of the ray generation shader, or with gl_RayFlagsSkipClosestHitShaderEXT");
-  }
   const auto index = [&](uint32_t operand, const char* what, size_t count) {
     const Scalar its = get_scalar(line.operands.at(operand));
     if (its.is_constant() && its.bits >= count)
@@ -526,7 +590,14 @@ void Lowering::send(const Line& line, const TraceSite& site) {
   const uint32_t bits = (path.comes_back ? 2 : 1) | site.number << kSiteShift | kReturnsFlag |
                         (skips ? kNoClosestHit : 0) | (asks ? kAsksAnyHit : 0) | (skips && all_count ? kFirstFlag : 0);
   const Scalar word = immediate(Opcode::Or, binary(Opcode::Or, miss, hit), bits);
-  for_each_held(site, [&](const Scalar& scalar, uint32_t number) { put_record_word(number, scalar); });
+  const Scalar place = place_held();
+  for_each_held(site, [&](const Scalar& scalar, uint32_t number) { put_word_at(place, number, scalar); });
+  if (waits_on_a_level()) {
+    assign(*path_->level, immediate(Opcode::Iadd, *path_->level, 1));
+    put_record_word(level_word(path.shaders), *path_->level);
+  } else if (nests(path.shaders)) {
+    put_record_word(level_word(path.shaders), Scalar::constant(0));
+  }
   const Scalar least = put_ray(line);
   if (records_begin(path.shaders)) put_record_word(begin_word(path.shaders), least);
   const Value payload = variable(payload_of(line));
@@ -538,10 +609,12 @@ void Lowering::send(const Line& line, const TraceSite& site) {
 
 void Lowering::go_on(const TraceSite& site) {
   way_ = {};
-  if (site.in_loop) assign(path_->site, Scalar::constant(0));
+  if (site.in_loop || waits_on_a_level()) assign(path_->site, Scalar::constant(0));
   take_payload_back(*site.line);
+  if (waits_on_a_level()) assign(*path_->level, immediate(Opcode::Isub, *path_->level, 1));
+  const Scalar place = place_held();
   for_each_held(site, [&](Scalar& scalar, uint32_t number) {
-    assign(scalar, from_word(record_word(number), scalar.kind == Scalar::Kind::Predicate));
+    assign(scalar, from_word(word_at(place, number), scalar.kind == Scalar::Kind::Predicate));
   });
 }
 

@@ -10,13 +10,21 @@ void Lowering::wait(const Line& line) {
   const TraceSite& site = *waits_->site(line);
   where_ = line.where;
   recorder_.set_place(where_);
-  under(alive_, [&] { send(line, site); });
+  // A ray that is too deep is not traced: the shader goes on at once.
+  Scalar stays = Scalar::constant(0), sends = alive_;
+  if (waits_on_a_level()) {
+    const Scalar deep = compare(Opcode::Uge, *path_->level, Scalar::constant(resources_.levels));
+    stays = copy(both(alive_, deep));
+    sends = both(alive_, inverse(deep));
+  }
+  under(sends, [&] { send(line, site); });
   if (!path_->comes_back) {
     alive_ = Scalar::in_predicate(recorder_.declare_predicate());  // nobody is
     return;
   }
   alive_ = compare(Opcode::Ieq, path_->site, Scalar::constant(site.number));
   under(alive_, [&] { go_on(site); });
+  alive_ = either(alive_, stays);
 }
 
 std::set<uint32_t> Lowering::sites_from(uint32_t label, uint32_t stop) const {

@@ -69,6 +69,9 @@ struct Resources {
   /// Of sets that wait for their rays: words that a path's record takes. Records lie at saved + path_bytes()
   /// (y path_pitch() + x); the values above come behind them.
   uint32_t path_words = 0;
+  /// How many closest-hit shaders of a path may wait for their rays at a time, where they wait for each other: 1 or
+  /// more.
+  uint32_t levels = 1;
   uint64_t path_bytes() const { return (uint64_t{4} * path_words + 63) / 64 * 64; }
   /// An odd number of eights, so that rows of a tile lie in different sets of the cache.
   uint64_t path_pitch() const { return 8 * ((uint64_t{width} + 7) / 8 | 1); }

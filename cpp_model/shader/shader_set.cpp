@@ -179,8 +179,8 @@ class Folder : public ShaderSet {
   const std::vector<Member>& push_constants() const override { return push_constants_; }
   const std::vector<ShaderRecord>& shader_records() const override { return records_; }
   bool waits() const override { return waits_; }
-  uint32_t path_words(const std::map<uint32_t, uint32_t>& specialization) const override {
-    return waits_ ? shader::path_words(Modules(*this, specialization).waiting()) : 0;
+  uint32_t path_words(const std::map<uint32_t, uint32_t>& specialization, uint32_t levels) const override {
+    return waits_ ? shader::path_words(Modules(*this, specialization).waiting(), levels) : 0;
   }
 
   EnumArray<RayKernel, kernel::Function, kRayKernels> record(const Resources& resources, const KernelTarget& target,

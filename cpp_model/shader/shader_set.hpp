@@ -77,8 +77,8 @@ class ShaderSet {
   /// Whether a shader goes on when its ray has come back: the machine must have chip.miss_records, and a frame a depth
   /// of 2 or more, whatever the shaders' own. A set that does not wait ends with its traces.
   virtual bool waits() const = 0;
-  /// What Resources::path_words must be.
-  virtual uint32_t path_words(const std::map<uint32_t, uint32_t>& specialization) const = 0;
+  /// What Resources::path_words must be, of so many Resources::levels.
+  virtual uint32_t path_words(const std::map<uint32_t, uint32_t>& specialization, uint32_t levels) const = 0;
   /// The ray kernels, not yet compiled. CastSecondaryDirect is the closest-hit shader without rays that go on; of a set
   /// that waits it is not used.
   /// `layout`: of the intersections that they import.

@@ -109,7 +109,8 @@ class Paths {
   Paths(const PathSet& set, World& world) : set_(set), world_(world), shaders_(set.shaders()) {
     Resources& resources = world.resources;
     resources.depth = 2;
-    resources.path_words = path_words(shaders_);
+    resources.levels = 3;
+    resources.path_words = path_words(shaders_, resources.levels);
     bytes_ = resources.saved + resources.paths_bytes() + resources.saved_stride() * kSpillSlots;
   }
 
@@ -170,6 +171,8 @@ class Paths {
     thread.call = [&](test::SpirvThread& caller, const test::SpirvThread::Call& call,
                       test::SpirvThread::Words& payload) {
       collect(caller);
+      const bool is_hit = caller.kernel() == RayKernel::CastSecondary;
+      if (is_hit && caller.level >= world_.resources.levels) return;  // too deep
       const bool first = (call.flags & kShadowRay) == kShadowRay;
       Ray ray = call.ray;
       ray[word::kFlags] = steps.size() == 1 ? 1 : 2;  // depth
@@ -190,6 +193,7 @@ class Paths {
       called.payload = payload;
       called.ray_flags = call.flags;
       called.begin = call.begin;
+      called.level = is_hit ? caller.level + 1 : 0;
       run(called, steps);
       payload = *called.payload;
     };

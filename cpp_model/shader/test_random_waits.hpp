@@ -48,7 +48,7 @@ const uint kOpaque = gl_RayFlagsOpaqueEXT;
 /// is kept lies in -64 .. 64. The same for the same seed.
 class RandomWaits {
  public:
-  explicit RandomWaits(uint32_t seed) : random_(seed), size_(1 + seed % 3) {}
+  explicit RandomWaits(uint32_t seed) : random_(seed), size_(1 + seed % 3), nests_(seed % 4 == 3) {}
 
   /// Names and texts of the set's files.
   std::vector<std::pair<std::string, std::string>> files() {
@@ -252,6 +252,13 @@ class RandomWaits {
   void trace() {
     if (traces_ == 0) return assign();
     --traces_;
+    if (in_hit_ && nested_ > 0 && chance(2)) {
+      // It comes to a closest-hit shader, which may trace one itself.
+      --nested_;
+      return line(fmt::format("TRACE(kOpaque, {}, {}, {}, {}, 2);",
+                              hits_ > 1 ? fill("uint($i & 1)", 1) : std::string("0"), below(misses_), kept('3', 2),
+                              kept('3', 2)));
+    }
     const bool light = in_hit_ || chance(4);
     const bool any = in_hit_ || chance(4);
     const std::string miss = light                      ? fmt::format("{}", misses_)
@@ -329,6 +336,7 @@ class RandomWaits {
 
   void store() {
     if (loops_ > 0 || in_function_) return assign();
+    if (in_hit_ && nests_) return assign();
     line(chance(4) ? fill("imageStore(picture, ivec2($i & 15, $i & 7), vec4($3, 1.0));", 2) : fill("STORE($3);", 3));
   }
 
@@ -436,9 +444,10 @@ class RandomWaits {
     return body(2 + size_, "STORE(abs($3) + $f + $f);");
   }
   std::string hit() {
-    start(
+    start(fmt::format(
         "layout(location = 0) rayPayloadInEXT Payload payload;\nlayout(location = 1) rayPayloadEXT Light light;\n"
-        "hitAttributeEXT vec2 attributes;\n");
+        "{}hitAttributeEXT vec2 attributes;\n",
+        nests_ ? "layout(location = 2) rayPayloadEXT Payload inner;\n" : ""));
     in_hit_ = true;
     text_ += "void main() {\n";
     indent_ = 1;
@@ -448,7 +457,9 @@ class RandomWaits {
     variables_.push_back({'i', "gl_PrimitiveID", false});
     variables_.push_back({'3', "gl_WorldRayOriginEXT", false});
     give_values(light_, "light");
-    traces_ = chance(2) ? 0 : 1 + below(2);
+    if (nests_) give_values(payload_, "inner");
+    traces_ = nests_ ? 2 : chance(2) ? 0 : 1 + below(2);
+    nested_ = nests_ ? 1 : 0;
     return body(1 + below(size_), "");
   }
   std::string miss(const std::string& payload, uint32_t location) {
@@ -464,7 +475,8 @@ class RandomWaits {
   uint32_t size_;
   std::string structs_, text_;
   std::vector<Variable> payload_, light_, variables_;
-  uint32_t hits_ = 1, misses_ = 1, traces_ = 0, calls_ = 0;
+  const bool nests_;  // closest-hit shaders wait for each other
+  uint32_t hits_ = 1, misses_ = 1, traces_ = 0, calls_ = 0, nested_ = 0;
   int indent_ = 0, loops_ = 0, names_ = 0;
   bool has_function_ = false, in_function_ = false, in_hit_ = false;
 };

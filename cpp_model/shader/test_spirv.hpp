@@ -76,12 +76,14 @@ class SpirvThread {
   std::vector<OracleContribution> frame;
   uint64_t most_blocks = 200000;
   Memory& memory() { return memory_; }
+  RayKernel kernel() const { return kernel_; }
   /// Of a shader that waits for its rays: runs the shader that a ray comes to, which may change the payload.
   std::function<void(SpirvThread&, const Call&, Words&)> call;
   /// Of a shader that is called: the payload, before run() and behind it, and of the ray its flags and where it begins.
   std::optional<Words> payload;
   std::optional<uint32_t> ray_flags;
   float begin = 0;
+  uint32_t level = 0;  ///< of a closest-hit shader: how many wait for it
   /// What executeCallableEXT counts; of a shader that it calls, its data before and behind run().
   std::vector<const shader::Module*> callables;
   std::optional<Words> callable_data;

@@ -48,7 +48,7 @@ TEST_P(WaitingFolders, LeaveWhatTheirSpirvLeaves) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WaitingFolders,
-                         testing::Values("triangle", "reflections", "shadow_inside", "bounces", "groups"),
+                         testing::Values("triangle", "reflections", "shadow_inside", "bounces", "groups", "nested"),
                          [](const auto& one) { return std::string(one.param); });
 
 // ---- sets in odd shapes

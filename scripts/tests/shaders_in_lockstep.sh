@@ -105,6 +105,7 @@ wait_large() {
   draw cornell groups 12x8 1 1
   draw $features cutouts 12x8 1 1
   draw $features table 6x4 1 1
+  draw $features nested 8x6 4 1
 }
 if [ "$boundary" = unit ]; then
   on_unit

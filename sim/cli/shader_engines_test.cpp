@@ -168,7 +168,7 @@ TEST_F(ShaderEngines, DrawTheSamePictureWithRecordsOfTheWordsThatASetNeeds) {
 
 /// Those whose shaders wait for their rays.
 const std::vector<std::string> kWaiting = {"triangle", "reflections", "shadow_inside", "bounces",
-                                           "groups",   "cutouts",     "table"};
+                                           "groups",   "cutouts",     "table",         "nested"};
 
 TEST_F(ShaderEngines, DrawTheSamePictureWhereShadersWaitForTheirRays) {
   const std::vector<std::vector<std::string>> machines = {
@@ -185,6 +185,17 @@ TEST_F(ShaderEngines, DrawTheSamePictureWhereShadersWaitForTheirRays) {
     const std::string needs = refusal(options("cpp_model/shader/cases/" + set, "cornell", {"chip.miss_records=false"}));
     EXPECT_NE(needs.find("chip.miss_records=true"), std::string::npos) << needs;
   }
+}
+
+TEST_F(ShaderEngines, ClosestHitShadersThatWaitForEachOtherDrawWhatALoopDraws) {
+  const auto picture = [&](const std::string& set, int depth) {
+    SimOptions mirrors = options("cpp_model/shader/cases/" + set, kTextured);
+    mirrors.depth = depth;
+    return drawn(mirrors, "native");
+  };
+  const std::string loop = picture("reflections", 1);
+  EXPECT_TRUE(picture("nested", 4) == loop);
+  EXPECT_FALSE(picture("nested", 1) == loop) << "deeper rays are not traced";
 }
 
 /// The sets look at that themselves, and store green where it is so.

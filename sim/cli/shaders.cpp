@@ -121,7 +121,8 @@ MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSe
       offset_share(longest_direction(frame.camera, frame.width, frame.height), record.configuration.significand));
   shader::Resources resources = options.shader_source.memory(image, scene, set, frame);
   if (record.waits) {
-    resources.path_words = set.path_words(resources.specialization);
+    resources.levels = static_cast<uint32_t>(record.depth);
+    resources.path_words = set.path_words(resources.specialization, resources.levels);
     resources.depth = 0;  // a path has but one kernel at a time
     check_units_that_wait(resources, record);
   }

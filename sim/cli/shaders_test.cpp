@@ -29,7 +29,7 @@ class RecordedSet : public shader::ShaderSet {
   const std::vector<shader::Member>& push_constants() const override { return constants_; }
   const std::vector<shader::ShaderRecord>& shader_records() const override { return records_; }
   bool waits() const override { return false; }
-  uint32_t path_words(const std::map<uint32_t, uint32_t>& /*specialization*/) const override { return 0; }
+  uint32_t path_words(const std::map<uint32_t, uint32_t>&, uint32_t) const override { return 0; }
   RayFunctions record(const shader::Resources& resources, const KernelTarget& target,
                       const RecordLayout& /*layout*/) const override {
     return record_(resources, target);

@@ -35,7 +35,7 @@ class DeclaredSet : public shader::ShaderSet {
   const std::vector<Member>& push_constants() const override { return push_constants_; }
   const std::vector<shader::ShaderRecord>& shader_records() const override { return records_; }
   bool waits() const override { return false; }
-  uint32_t path_words(const std::map<uint32_t, uint32_t>& /*specialization*/) const override { return 0; }
+  uint32_t path_words(const std::map<uint32_t, uint32_t>&, uint32_t) const override { return 0; }
   EnumArray<RayKernel, kernel::Function, kRayKernels> record(const shader::Resources&, const KernelTarget&,
                                                              const RecordLayout&) const override {
     throw InputError("nothing is recorded here");
