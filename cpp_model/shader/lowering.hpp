@@ -270,7 +270,6 @@ class Lowering {
 
   // lowering_operations.cpp: what lines compute
   void operation(const Line& line);
-  bool wide_integers(const Line& line);
   bool arithmetic(const Line& line);
   bool conversion(const Line& line);
   /// The instruction's value, scalar by scalar of its one or two operands.
@@ -300,6 +299,13 @@ class Lowering {
   void product(const Line& line);
   bool is_fused_later(const Line& line) const;
 
+  // lowering_wide.cpp
+  bool wide_integers(const Line& line);
+  std::optional<Value> of_wide(const Line& line, bool gives, const Value& a, const Value& b);
+  Value wide_sum(bool adds, const Value& a, const Value& b);
+  Value wide_product(const Value& a, const Value& b);
+  Value wide_shift(bool is_left, const Value& a, uint32_t places);
+
   // lowering_memory.cpp: pointers
   void begin_variables();
   void keep(uint32_t id, uint32_t type, const Value& first);
@@ -313,6 +319,7 @@ class Lowering {
   void store_chosen(Value& whole, const Pointer& pointer, size_t depth, uint32_t offset, const Value& value);
   Pointer pointer_of(uint32_t id);
   Pointer global(uint32_t id, const Variable& variable);
+  const std::vector<Word>* known_words(const Variable& variable, const Place& place) const;
   void step_into(Pointer& pointer, uint32_t index_id);
   /// Calls leaf(offset in bytes) for each scalar of a type in memory.
   template <typename Leaf>

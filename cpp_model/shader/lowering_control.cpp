@@ -411,10 +411,7 @@ void Lowering::selection(const Block& block, uint32_t stop) {
     after = before;
   } else if (chosen.is_constant()) {
     // Nobody goes to the other side, which may have what is not supported.
-    if (chosen.bits != 0)
-      arm(yes, then_flow, from_then);
-    else
-      arm(no, else_flow, from_else);
+    chosen.bits != 0 ? arm(yes, then_flow, from_then) : arm(no, else_flow, from_else);
   } else if (is_idle(yes)) {
     under(inverse(chosen), [&] { arm(no, else_flow, from_else); });
     arm(yes, {{}, true}, from_then);

@@ -92,6 +92,25 @@ const Value& Lowering::variable(uint32_t id) {
   return found->second;
 }
 
+/// Of a uniform block, the push constants or the shader record; null: it is none of these, or has no content.
+const std::vector<Word>* Lowering::known_words(const Variable& variable, const Place& place) const {
+  const auto found = [](const auto& all, const auto& key) {
+    const auto its = all.find(key);
+    return its == all.end() ? nullptr : &its->second;
+  };
+  switch (variable.storage) {
+    case spv::StorageClass::Uniform:
+    case spv::StorageClass::StorageBuffer:
+      return found(resources_.blocks, place);
+    case spv::StorageClass::PushConstant:
+      return &resources_.push_constants;
+    case spv::StorageClass::ShaderRecordBufferKHR:
+      return found(resources_.records, RecordPlace{record_stage(module_.stage()), module_.number()});
+    default:
+      return nullptr;
+  }
+}
+
 Pointer Lowering::global(uint32_t id, const Variable& variable) {
   Pointer pointer;
   pointer.type = module_.type(variable.type).element;
@@ -102,15 +121,14 @@ Pointer Lowering::global(uint32_t id, const Variable& variable) {
     fail(fmt::format("{} '{}' (set {}, binding {}) has no content: name it in shaders.json", what, module_.name_of(id),
                      place.first, place.second));
   };
+  pointer.words = known_words(variable, place);
+  if (pointer.words != nullptr) {
+    pointer.to = Pointer::To::Words;
+    return pointer;
+  }
   switch (variable.storage) {
     case spv::StorageClass::Uniform:
     case spv::StorageClass::StorageBuffer: {
-      const auto block = resources_.blocks.find(place);
-      if (block != resources_.blocks.end()) {
-        pointer.to = Pointer::To::Words;
-        pointer.words = &block->second;
-        return pointer;
-      }
       const auto buffer = resources_.buffers.find(place);
       if (buffer == resources_.buffers.end())
         missing(variable.storage == spv::StorageClass::Uniform ? "block" : "buffer");
@@ -119,17 +137,8 @@ Pointer Lowering::global(uint32_t id, const Variable& variable) {
       pointer.size = buffer->second.bytes;
       return pointer;
     }
-    case spv::StorageClass::PushConstant:
-      pointer.to = Pointer::To::Words;
-      pointer.words = &resources_.push_constants;
-      return pointer;
-    case spv::StorageClass::ShaderRecordBufferKHR: {
-      const auto record = resources_.records.find({record_stage(module_.stage()), module_.number()});
-      if (record == resources_.records.end()) missing("shader record");
-      pointer.to = Pointer::To::Words;
-      pointer.words = &record->second;
-      return pointer;
-    }
+    case spv::StorageClass::ShaderRecordBufferKHR:
+      fail(fmt::format("shader record '{}' has no content: give it a record in shaders.json", module_.name_of(id)));
     case spv::StorageClass::UniformConstant: {
       const Type& its = module_.type(pointer.type);
       uint32_t element = pointer.type;
