@@ -14,6 +14,19 @@
 namespace raypool {
 namespace {
 
+// Before constants are made of the rows: a number of its own for each instruction of an ALU.
+#define RAYPOOL_CHECK_NUMBER(name, type, operation, ...) \
+  static_assert((operation) < 32, "an ALU has operations 0 to 31: give " #name " a free number");
+RAYPOOL_INSTRUCTIONS(RAYPOOL_CHECK_NUMBER)
+#undef RAYPOOL_CHECK_NUMBER
+constexpr bool numbers_are_distinct() {
+  for (const InstructionInfo& one : kInstructions)
+    for (const InstructionInfo& other : kInstructions)
+      if (&one != &other && one.opcode == other.opcode) return false;
+  return true;
+}
+static_assert(numbers_are_distinct(), "two rows of RAYPOOL_INSTRUCTIONS have the same ALU and number");
+
 /// BusyCycles: BUSY_CYCLES
 std::string words_in_upper_case(std::string_view name) {
   std::string text;

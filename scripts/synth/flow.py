@@ -322,6 +322,7 @@ def close_timing(design, work, slack):
         if slack > best:
             best, efforts = slack, dict(design.efforts)
     if slack == best:
+        design.phases.note(f"slack {slack:+.3f} ns")
         return slack
     design.phases.note(f"slack {slack:+.3f} ns; back to the netlist with {best:+.3f} ns")
     design.efforts = efforts

@@ -80,8 +80,12 @@ std::string newer_verilog(const std::string& library, const std::string& rtl) {
 
 namespace {
 
+/// One that is read from a file of a run has its name alone: that of a file in configs/, or of one for cosim.
 std::string source_of(const Configuration& configuration) {
-  return configuration.source.empty() ? configuration.name : configuration.source;
+  if (!configuration.source.empty()) return configuration.source;
+  const std::string cosim = fmt::format("configs/cosim/{}.json", configuration.name);
+  const fs::path named = fs::path(data_folder()) / "configs" / (configuration.name + ".json");
+  return !fs::exists(named) && fs::exists(fs::path(data_folder()) / cosim) ? cosim : configuration.name;
 }
 
 /// What a user types to have the unit: from a checkout make, of an installed program the program itself.
