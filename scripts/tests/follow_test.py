@@ -69,7 +69,7 @@ class Tour(Case):
         for way in ("traverser: set-up: lane", "of its boxes 3 met", "hit at t 7.27261", "the ray leaves its lane",
                     "controller -> multiprocessor: launch", "multiprocessor -> ray_pool: a ray",
                     "ray_pool -> traverser", "traverser -> intersection_pool", "intersection_pool -> multiprocessor",
-                    "multiprocessor -> frame_port", "frame_port -> frame buffer", "113 instructions"):  # fmt: skip
+                    "multiprocessor -> frame_port", "frame_port -> frame buffer", "120 instructions"):  # fmt: skip
             self.assertIn(way, said)
         for name in ("time", "way", "export", "node", "triangle", "launch", "import", "frame"):
             shown = (ROOT / f"docs/images/tour-{name}.svg").read_text()
