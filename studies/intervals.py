@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Are the intervals of engine `sampled` honest? How many of them contain what the whole frame takes.
+"""Checks the coverage of the confidence intervals of engine `sampled`: how many contain what the whole frame takes.
 
     studies/intervals.py [--samples N] [--error PERCENT] [--scenes NAME,...] [--configs NAME,...] [--size WxH]
       [--traverser static|hardware] [--out FILE]
@@ -26,7 +26,7 @@ FEWEST, MOST = 0.92, 0.98  # of the intervals of the cycles
 FEWEST_OF_OTHERS = 0.90
 # Those that are small and in bursts; what little they are is known badly, and said to be.
 LEAST_SHARE = 0.01  # a utilisation below is not asked for
-FAILURE, DISHONEST = 1, 3
+FAILURE, OUTSIDE = 1, 3
 # {traverser: pictures of which samples of a few percent are parts}
 SIZES = {"static": "256x256", "hardware": "512x512"}
 
@@ -162,9 +162,9 @@ def run(arguments, folder):
     if arguments.out:
         document = {"command": sys.argv, "frames": frames, "contained": shares}
         arguments.out.write_text(json.dumps(document, indent=2) + "\n")
-    print(f"dishonest: {', '.join(bad)}" if bad else f"honest: of the cycles {FEWEST:.0%} to {MOST:.0%} were asked, "
-          f"of each other figure {FEWEST_OF_OTHERS:.0%} or more")  # fmt: skip
-    return DISHONEST if bad else 0
+    print(f"coverage outside its limits: {', '.join(bad)}" if bad else f"coverage within its limits: of the cycles "
+          f"{FEWEST:.0%} to {MOST:.0%}, of each other figure {FEWEST_OF_OTHERS:.0%} or more")  # fmt: skip
+    return OUTSIDE if bad else 0
 
 
 def main():

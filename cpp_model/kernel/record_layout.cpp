@@ -87,7 +87,7 @@ void place_words(Function& kernel, const RecordLayout& layout) {
   const auto lacks = [&](const Op& op) {
     return is(op, Opcode::Rld) && op.word >= kRayWords && layout.place.at(op.word) == RecordLayout::kAbsent;
   };
-  // What nobody uses is not needed, and no place of the layout.
+  // Words that nothing uses are not needed and have no place in the layout.
   if (std::any_of(kernel.ops.begin(), kernel.ops.end(), lacks)) remove_dead(kernel);
   kernel.slice_words = static_cast<int>(layout.words);
   for (Op& op : kernel.ops) {

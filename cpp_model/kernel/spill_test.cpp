@@ -445,7 +445,7 @@ TEST(ReuseValues, WordsAreNotWrittenWithWhatTheyHold) {
     k.set_word(7, pixel);                                 // idle
     k.set_word(8, pixel);                                 // not idle
     k.if_(pixel > other, [&] { k.set_word(6, other); });  // not idle
-    k.set_word(15, other);                                // nobody reads it
+    k.set_word(15, other);                                // nothing reads it
     k.ray_out();
   };
   EXPECT_EQ(count_of(check(body, Room::Words).program, Opcode::Rst), 2);

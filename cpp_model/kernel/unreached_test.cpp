@@ -12,8 +12,8 @@ namespace {
 Function left_of(const std::function<void(Recorder&, RecordedKernel&, int)>& body) {
   Recorder recorder("left");
   RecordedKernel kernel(recorder);
-  const int nobody = recorder.declare_predicate();
-  body(recorder, kernel, nobody);
+  const int no_lane = recorder.declare_predicate();
+  body(recorder, kernel, no_lane);
   Function function = recorder.finish();
   remove_unreached(function);
   return function;
@@ -30,8 +30,8 @@ void store_some(RecordedKernel& kernel, int stores) {
 
 TEST(Unreached, GoesWithItsJumpAndAllThatDependsOnIt) {
   for (const int stores : {1, 9}) {
-    const Function function = left_of([&](Recorder& recorder, RecordedKernel& kernel, int nobody) {
-      recorder.begin_if({nobody, false, {}});
+    const Function function = left_of([&](Recorder& recorder, RecordedKernel& kernel, int no_lane) {
+      recorder.begin_if({no_lane, false, {}});
       store_some(kernel, stores);
       const auto inner = kernel.thread() == 3;
       recorder.begin_if({inner.number(), false, {}});
@@ -46,8 +46,8 @@ TEST(Unreached, GoesWithItsJumpAndAllThatDependsOnIt) {
 }
 
 TEST(Unreached, IsNotTheOtherArm) {
-  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int nobody) {
-    recorder.begin_if({nobody, false, {}});
+  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int no_lane) {
+    recorder.begin_if({no_lane, false, {}});
     store_some(kernel, 8);
     recorder.begin_else();
     store_some(kernel, 7);
@@ -57,24 +57,24 @@ TEST(Unreached, IsNotTheOtherArm) {
 }
 
 TEST(Unreached, IsNotWhatLanesJoinLater) {
-  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int nobody) {
+  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int no_lane) {
     const auto some = kernel.thread() == 3;
     const int again = recorder.materialise({some.number(), false, {}});
     recorder.begin_loop(again, {});
-    recorder.begin_if({nobody, false, {}});
+    recorder.begin_if({no_lane, false, {}});
     store_some(kernel, 8);
     recorder.end_if();
-    recorder.join(nobody);  // from the second round on
+    recorder.join(no_lane);  // from the second round on
     recorder.end_loop(some.number(), false);
   });
   EXPECT_EQ(count(function, Opcode::St), 8);
 }
 
 TEST(Unreached, IsALoopThatNobodyEnters) {
-  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int nobody) {
-    recorder.begin_loop(nobody, {});
+  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int no_lane) {
+    recorder.begin_loop(no_lane, {});
     store_some(kernel, 3);
-    recorder.end_loop(nobody, false);
+    recorder.end_loop(no_lane, false);
     store_some(kernel, 1);
   });
   EXPECT_EQ(count(function, Opcode::St), 1);
@@ -82,8 +82,8 @@ TEST(Unreached, IsALoopThatNobodyEnters) {
 }
 
 TEST(Unreached, KeepsWhatChangesTheSlicesOfAWarp) {
-  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int nobody) {
-    recorder.begin_if({nobody, false, {}});
+  const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int no_lane) {
+    recorder.begin_if({no_lane, false, {}});
     kernel.set_word(3, kernel.thread());
     kernel.ray_out();
     recorder.end_if();

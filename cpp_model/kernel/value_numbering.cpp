@@ -131,7 +131,7 @@ class Contents {
   bool defined_before(int number, size_t op) const {
     return has_one_definition(number) && order_.dominates(at(definitions_[at(number)]), op);
   }
-  /// Whoever reads it finds what its only definition has left.
+  /// Every read finds what its only definition has left.
   bool is_replaceable(int number) const { return has_one_definition(number) && replaceable_[at(number)]; }
 
   void begin_block(int& fresh) {

@@ -34,7 +34,7 @@ struct WaitingShader {
   const Module& module;
   const Waits& waits;
 };
-/// With the hit groups that it belongs to.
+/// With the hit groups that it is part of.
 struct ClosestHitShader {
   WaitingShader shader;
   std::vector<uint32_t> groups;
@@ -210,10 +210,10 @@ class Lowering {
   void put_word_at(const Scalar& place, uint32_t number, const Scalar& value);
   Scalar record_word(uint32_t number);
   void put_record_word(uint32_t number, const Scalar& value);
-  /// Payload of a ray that has come, and what goes back to who has traced it.
+  /// Payload of a ray that has come, and what goes back to the shader that has traced it.
   void take_payload(uint32_t id, uint32_t type);
   void give_payload();
-  /// Of the trace that has called: what `of` says of it.
+  /// Of the trace that has called: what `of` gives for it.
   template <typename Of>
   Scalar of_site(const Of& of);
   Scalar flags_of_trace();

@@ -410,7 +410,7 @@ void Lowering::selection(const Block& block, uint32_t stop) {
   if (is_idle(yes) && is_idle(no)) {
     after = before;
   } else if (chosen.is_constant()) {
-    // Nobody goes to the other side, which may have what is not supported.
+    // No lane takes the other side, which may have what is not supported.
     chosen.bits != 0 ? arm(yes, then_flow, from_then) : arm(no, else_flow, from_else);
   } else if (is_idle(yes)) {
     under(inverse(chosen), [&] { arm(no, else_flow, from_else); });

@@ -9,7 +9,7 @@
 namespace raypool::shader {
 namespace {
 
-/// Beyond this, choosing among the words of an array takes more instructions than anybody wants.
+/// Beyond this, choosing among the words of an array takes too many instructions.
 constexpr size_t kMostChoices = 256;
 
 }  // namespace

@@ -110,7 +110,7 @@ uint32_t begin_word(const WaitingShaders& shaders) { return payload_words(shader
 uint32_t level_word(const WaitingShaders& shaders) { return payload_words(shaders) + (records_begin(shaders) ? 1 : 0); }
 uint32_t first_held_word(const WaitingShaders& shaders) { return level_word(shaders) + (nests(shaders) ? 1 : 0); }
 
-/// Words of the ray that hold scalars 3 .. 9 of what a shader gives back: nobody needs its origin and direction then.
+/// Words of the ray that hold scalars 3 .. 9 of what a shader gives back, in place of its origin and direction.
 bool goes_back_in_word(uint32_t scalar) { return scalar < kPayloadInRay + word::kPixel; }
 int word_back(uint32_t scalar) {
   return static_cast<int>(scalar < kPayloadInRay ? word::kColor + scalar : scalar - kPayloadInRay);
@@ -192,7 +192,7 @@ void Lowering::begin_calls() {
   if (!path_->level) return;
   path_->fresh = recorder_.declare_predicate();
   recorder_.join(*path_->fresh);
-  // Behind the trace that has called nobody goes on yet.
+  // No lane goes on yet behind the trace that has called.
   path_->caller = copy(path_->site);
   Scalar calls = Scalar::constant(0);
   for (uint32_t i = 0; i < path_->shaders.misses.size(); ++i) calls = either(calls, goes_to_miss(i));
@@ -443,7 +443,7 @@ void Lowering::put_back(uint32_t number, const Scalar& scalar) {
     put_record_word(number - kPayloadInRay, scalar);
 }
 
-/// What variables of payloads hold goes back to who has called.
+/// What variables of payloads hold goes back to the caller.
 void Lowering::give_payload() {
   for_each_payload([&](uint32_t /*id*/, uint32_t number, const Scalar& scalar) { put_back(number, scalar); });
 }
@@ -453,12 +453,12 @@ void Lowering::give_back_unread() {
   const uint32_t most = most_payload(path_->shaders);
   if (most <= kPayloadInRay) return;
   const Scalar hit = has_flag(kMetFlag);
-  Scalar nobody = both(hit, has_flag(kNoClosestHit));
+  Scalar unread = both(hit, has_flag(kNoClosestHit));
   const std::vector<uint32_t> empty = groups_without_closest_hit(path_->shaders);
-  if (!empty.empty()) nobody = either(nobody, goes_to_groups(empty));
-  if (path_->shaders.misses.empty()) nobody = either(nobody, inverse(hit));
-  if (path_->ignored) nobody = both(nobody, Scalar::in_predicate(*path_->ignored, true));
-  under(nobody, [&] {
+  if (!empty.empty()) unread = either(unread, goes_to_groups(empty));
+  if (path_->shaders.misses.empty()) unread = either(unread, inverse(hit));
+  if (path_->ignored) unread = both(unread, Scalar::in_predicate(*path_->ignored, true));
+  under(unread, [&] {
     for (uint32_t i = kPayloadInRay; i < most; ++i)
       if (goes_back_in_word(i)) put_back(i, payload_scalar(i));
   });
@@ -584,7 +584,7 @@ void Lowering::send(const Line& line, const TraceSite& site) {
   const Path& path = *path_;
   const size_t misses = std::max(size_t{1}, path.shaders.misses.size());
   const Scalar miss = immediate(Opcode::Shl, index(5, "miss shader", misses), kMissShift);
-  Scalar hit = Scalar::constant(0);  // of a ray that nobody's hit group looks at
+  Scalar hit = Scalar::constant(0);  // of a ray that no hit group looks at
   if (asks || !skips) hit = immediate(Opcode::Shl, index(3, "hit group", path.shaders.groups), kHitShift);
   // Any hit will do where every hit counts and no shader looks at it.
   const uint32_t bits = (path.comes_back ? 2 : 1) | site.number << kSiteShift | kReturnsFlag |

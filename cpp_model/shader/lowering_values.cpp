@@ -10,7 +10,7 @@ using kernel::Condition;
 Value Lowering::get(uint32_t id) {
   const auto product = products_.find(id);
   if (product != products_.end()) {
-    // Nobody takes it in: it becomes a multiplication.
+    // No sum takes it in: it becomes a multiplication.
     const Product waiting = product->second;
     products_.erase(product);
     Value value(waiting.a.size());

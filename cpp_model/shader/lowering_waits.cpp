@@ -19,7 +19,7 @@ void Lowering::wait(const Line& line) {
   }
   under(sends, [&] { send(line, site); });
   if (!path_->comes_back) {
-    alive_ = Scalar::in_predicate(recorder_.declare_predicate());  // nobody is
+    alive_ = Scalar::in_predicate(recorder_.declare_predicate());  // no lane is
     return;
   }
   alive_ = compare(Opcode::Ieq, path_->site, Scalar::constant(site.number));
@@ -202,7 +202,7 @@ void Lowering::waiting_region(uint32_t label, uint32_t stop) {
     const bool is_loop = block.continues != 0 && std::find(open_.begin(), open_.end(), block.merge) == open_.end();
     if (!is_loop) waiting_lines(block);
     if (is_loop || (block.merge != 0 && block.continues == 0)) {
-      // Whoever comes to the merge is in its predicate.
+      // Lanes that come to the merge are in its predicate.
       const uint32_t merge = block.merge;
       const bool is_inner = merge != stop && !is_open(merge);
       if (is_inner) {

@@ -151,7 +151,7 @@ class Module {
   std::unordered_map<uint32_t, uint32_t> uses_, types_of_values_;
 };
 
-/// Whose shader records those of a stage are.
+/// The kind of shader record that shaders of a stage read.
 RecordStage record_stage(spv::ExecutionModel stage);
 
 /// A name that lives as long as the program, as places in kernels need it.

@@ -19,7 +19,7 @@ inline constexpr int kSpillSlots = 256;
 /// Descriptor set and binding.
 using Place = std::pair<uint32_t, uint32_t>;
 
-/// Whose shader record it is: of a stage, by the number in it. Hit groups count as closest-hit shaders.
+/// Which shader has the record: its stage, and its number in it. Hit groups count as closest-hit shaders.
 enum class RecordStage : uint8_t { RayGeneration, Miss, HitGroup, Callable };
 using RecordPlace = std::pair<RecordStage, uint32_t>;
 

@@ -329,7 +329,7 @@ class Folder : public ShaderSet {
       }
       if (!found) {
         throw InputError(
-            fmt::format("{}: no closest-hit shader has its name, so it belongs to no hits: name it as one "
+            fmt::format("{}: no closest-hit shader has its name, so it is in no hit group: name it as one "
                         "of them, or list the hit_groups in shaders.json",
                         (fs::path(folder_) / name).string()));
       }

@@ -42,7 +42,7 @@ struct Binding {
 
 /// Which shaders a set has, and in which order traceRayEXT and executeCallableEXT count them: names of files, of which
 /// one may stand for several. A list that is empty has all files of its stage, in the order of their names; then an
-/// any-hit shader belongs to the closest-hit shader of its name, or to all if it is the only one.
+/// any-hit shader goes with the closest-hit shader of its name, or with all if it is the only one.
 struct ShaderTable {
   struct HitGroup {
     std::string closest_hit, any_hit;  ///< empty: none

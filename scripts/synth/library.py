@@ -45,7 +45,7 @@ def text_of(path):
             hint = f"LIBERTY={path}: name the file, the project ships no library; {known[path]['where']}"
         else:
             names = ", ".join(known)
-            hint = f"LIBERTY={path}: no such Liberty file; LIBERTY=NAME tells where to get that of {names}"
+            hint = f"LIBERTY={path}: no such Liberty file; LIBERTY=NAME prints where to get that of {names}"
         raise SynthError(hint) from None
     except (OSError, EOFError, zlib.error) as error:
         raise SynthError(f"LIBERTY={path}: the Liberty file cannot be read ({error})") from error

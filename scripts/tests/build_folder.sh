@@ -30,7 +30,7 @@ if PATH=$folder/bin:$PATH scripts/build.sh "$folder" all 2> "$log" || [ "$(cat "
 fi
 echo "ok: a build that fails"
 
-# Who waits for another one is told so, by what configures and by what builds.
+# A call that waits for another one prints that, whether it configures or builds.
 printf '#!/bin/sh\n' > "$folder/bin/cmake"
 for waiting in "configure.sh $folder/shared OFF" "build.sh $folder/shared"; do
   mkdir -p "$folder/shared"

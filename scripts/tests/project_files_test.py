@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """What others read of the project before they read its code: one version number, the citation, issue forms, workflows,
-the Dockerfile, presets, hooks and what editors are told name only what there is, and agree with each other."""
+the Dockerfile, presets, hooks and what editors read name only what there is, and agree with each other."""
 import configparser
 import json
 import pathlib

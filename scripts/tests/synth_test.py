@@ -404,7 +404,7 @@ class Whole(SmallBlocks):
             json.dump({"mrays_per_second": 1.0, "config": "4w4c", "units": 1, "traverser": "static"}, file)
         self.written("run.json.gz", "not packed")
         for arguments, word in (
-            (["report", "--liberty", "/no/such.lib"], "no such Liberty file; LIBERTY=NAME tells where"),
+            (["report", "--liberty", "/no/such.lib"], "no such Liberty file; LIBERTY=NAME prints where"),
             (["report", "--liberty", "sg13g2"], "IHP-Open-PDK"),
             (["report", "--liberty", "/dev/null"], "not a Liberty file"),
             (["report", "--liberty", run + ".gz"], "cannot be read"),

@@ -157,7 +157,7 @@ void main() {
     const float straightness = max(-dot(ray, slope), 0.0);
     const vec3 mirrored = ray + 2.0 * straightness * slope;
     const float visible = ggx_visible(max(dot(mirrored, normal), 0.0), width);
-    // What such slopes do not reflect goes into the surface: in the mean over slopes, all that the highlight leaves.
+    // What such slopes do not reflect goes into the surface: on average over slopes, all that the highlight leaves.
     const vec3 matt = (1.0 - metallic) * (1.0 - fresnel(vec3(0.04), straightness).x * visible) * color.rgb;
 
     const float reflected = largest(fresnel(straight, viewer));

@@ -1,5 +1,5 @@
-// For tests: a world where rays hit and miss by a hash of pixel and depth, and a compute unit that plays the ray
-// kernels in it, obeying the port protocols with random delays, so that a run's every ray is known beforehand.
+// For tests: a world where rays hit and miss by a hash of pixel and depth, and a compute unit that stands in for
+// the ray kernels in it, obeying the port protocols with random delays, so that a run's every ray is known beforehand.
 #pragma once
 
 #include <algorithm>

@@ -39,7 +39,7 @@ void DrawingCommands::add_shader_options(CLI::App& sim_app) {
       ->group(option_group::kScene);
   sim_app
       .add_option("--samples", sim_.samples,
-                  "with --shaders: frames that add up to the picture, each told its number; the shaders weigh them")
+                  "with --shaders: frames that add up to the picture, each with its number; the shaders weigh them")
       ->group(option_group::kScene)
       ->check(CLI::Range(1, kMostSamples))
       ->capture_default_str();

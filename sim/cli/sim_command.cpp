@@ -222,7 +222,7 @@ FrameBuffer draw_samples(RunRecord& record, const Scene& scene, const MemoryImag
   return std::move(*picture);
 }
 
-/// `decisions`, unless null, are told what rays come to.
+/// `decisions`, unless null, record what rays come to.
 FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
                           const Tracer& tracer, std::vector<NativeWork>* work = nullptr,
                           PixelDecisions* decisions = nullptr) {
@@ -508,7 +508,7 @@ RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& s
   }
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
-  // Whoever brings such shaders need not know what the chip must have for them; the machine's name shows it.
+  // A user of such shaders need not know what the chip must have for them; the machine's name shows it.
   if (record.waits && !is_chosen(options, "chip.miss_records")) set.emplace_back("chip.miss_records=true");
   record.configuration = load_configuration(options.config, set);
   check_fields_in_use(record.configuration);

@@ -255,12 +255,12 @@ class TriangleGroupRule : public BlockRule {
   void forget() override { limit_of_ = best_of_ = kNoLane; }
   void compare(Findings& findings) override {
     if (limit_of_ != kNoLane) {
-      expect(findings, told_limit_.value(), limit_.word(limit_of_), "limit that a test is told");
-      expect(findings, told_scale_.value(), scale_.bits(9 * limit_of_, 9), "scale that a test is told");
+      expect(findings, told_limit_.value(), limit_.word(limit_of_), "limit that a test is given");
+      expect(findings, told_scale_.value(), scale_.bits(9 * limit_of_, 9), "scale that a test is given");
     }
     if (best_of_ == kNoLane) return;
-    expect(findings, told_best_t_.value(), best_t_.word(best_of_), "time of the best hit that a test is told");
-    expect(findings, told_best_number_.value(), best_number_.word(best_of_), "best triangle that a test is told");
+    expect(findings, told_best_t_.value(), best_t_.word(best_of_), "time of the best hit that a test is given");
+    expect(findings, told_best_number_.value(), best_number_.word(best_of_), "best triangle that a test is given");
   }
   void take() override {
     limit_of_ = asks_limit_.value() != 0 ? limit_lane_.value() : kNoLane;

@@ -339,7 +339,7 @@ class ShaderMemory {
             {"metallic_roughness_texture", texture(&SurfaceMaterial::metallic_roughness_texture)}};
   }
   static Vec3 rgb(const Rgba& color) { return {color[0], color[1], color[2]}; }
-  /// At normal incidence; of what is no metal 0.04.
+  /// At normal incidence; 0.04 for the part that is not metal.
   static Vec3 reflectance(const SurfaceMaterial& m) {
     const float of_plastic = 0.04f * (1 - m.metallic);
     return rgb(m.base_color) * m.metallic + Vec3{of_plastic, of_plastic, of_plastic};

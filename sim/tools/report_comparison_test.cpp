@@ -119,10 +119,11 @@ TEST(ReportComparison, ReportsFieldsThatNeitherMachineUses) {
     return compare_reports(load_report(folder.path("a")), load_report(folder.path("b")), {});
   };
   const std::string field = "configuration.chip.hardware_traverser.lanes";
-  const Json vain = compared({"chip.traverser=static"}, {"chip.traverser=static", "chip.hardware_traverser.lanes=16"});
-  EXPECT_EQ(row_of(vain["set_up"], field)["not_looked_at"], "chip.traverser is static, which has no machine inside");
-  EXPECT_NE(comparison_table(vain).find("not looked at by either: chip.traverser is static"), std::string::npos);
-  EXPECT_FALSE(row_of(vain["set_up"], "configuration.name").contains("not_looked_at"));
+  const Json unused =
+      compared({"chip.traverser=static"}, {"chip.traverser=static", "chip.hardware_traverser.lanes=16"});
+  EXPECT_EQ(row_of(unused["set_up"], field)["not_looked_at"], "chip.traverser is static, which has no machine inside");
+  EXPECT_NE(comparison_table(unused).find("not looked at by either: chip.traverser is static"), std::string::npos);
+  EXPECT_FALSE(row_of(unused["set_up"], "configuration.name").contains("not_looked_at"));
   const Json used = compared({"chip.traverser=static"}, {"chip.hardware_traverser.lanes=16"});
   EXPECT_FALSE(row_of(used["set_up"], field).contains("not_looked_at")) << "one of them looks at it";
   EXPECT_EQ(comparison_table(used).find("not looked at"), std::string::npos);

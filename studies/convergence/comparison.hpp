@@ -17,7 +17,7 @@ struct Task {
   uint32_t reference_samples = 64;
 };
 
-/// The means of the set's samples; each scaled as if it were the whole picture. `seen` is told each.
+/// The means of the set's samples; each scaled as if it were the whole picture. `seen` is called with each.
 PictureSpread draw_with_shaders(const Task& task, const Scene& scene,
                                 const std::function<void(const BlockMeans&)>& seen = {});
 PictureSpread draw_reference(const Task& task, const Scene& scene);

@@ -40,7 +40,7 @@ def command(profile, *options):
 
 def asked_by_page(log):
     """The addresses on a network that the page has asked for, of the text of a net log (--log-net-log). A log that has
-    no requests of anybody, because it is of another form, is a ValueError."""
+    no requests at all, because it is of another form, is a ValueError."""
     net = json.loads(log)
     try:
         start = net["constants"]["logEventTypes"]["URL_REQUEST_START_JOB"]

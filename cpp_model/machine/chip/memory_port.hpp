@@ -152,7 +152,7 @@ class MemoryPort {
   bool quiet(uint64_t cycle, uint32_t unit) const {
     return reading_[unit] == 0 && writing_[unit] == 0 && cycle >= written_[unit];
   }
-  /// True if nothing of anybody does, as things stand.
+  /// True if nothing of any client does, as things stand.
   bool idle() const { return !waits() && !offers_ && lines_on_way_ == 0; }
   uint64_t reads() const { return reads_; }    ///< lines, of the device
   uint64_t writes() const { return writes_; }  ///< quadwords, of the device

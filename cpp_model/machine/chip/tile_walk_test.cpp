@@ -20,7 +20,7 @@ Tiles walk(TileOrder order, uint32_t columns, uint32_t rows) {
   return tiles;
 }
 
-// Where a step of the curve is, as everybody computes it: two bits of the step choose a quarter, from the smallest
+// Where a step of the curve is, as textbooks compute it: two bits of the step choose a quarter, from the smallest
 // square on, and what is inside is turned.
 std::pair<uint32_t, uint32_t> on_curve(uint64_t step, uint32_t side) {
   uint32_t column = 0, row = 0;

@@ -35,7 +35,7 @@ module check #(parameter LANES = 3, BANKS = 2) (
     .want_prefetch_i(prefetch_i), .silent_i(silent_i), .taken_o(taken), .valid_o(looks), .ready_i(ready_i),
     .line_o(looked), .lanes_o(lanes), .slots_o(slots));
 
-  // Anybody's want that stays the first one: what holds for any lane holds for all.
+  // A lane's want that stays the first one: what holds for any lane holds for all.
   (* anyconst *) wire [1:0] waiter;
   (* anyconst *) wire [2:0] line;
   wire [2:0] bank = line & (BANKS - 1);

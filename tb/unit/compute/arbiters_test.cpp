@@ -84,7 +84,7 @@ class PortArbiterBench {
   static constexpr uint32_t kCount = Port::kCount;
   explicit PortArbiterBench(uint32_t seed) : bench_(seed) {}
 
-  /// One cycle. `crowded`: everybody always.
+  /// One cycle. `crowded`: every port always.
   void clock(bool crowded) {
     show(crowded);
     // Valid does not depend on ready.

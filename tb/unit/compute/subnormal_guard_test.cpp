@@ -57,7 +57,7 @@ class Bench {
           opcodes_[u].push_back(info.opcode);
   }
 
-  /// One task of a unit; in most of them few lanes, or none, have anything to do with subnormal numbers.
+  /// One task of a unit; in most of them few lanes, or none, have subnormal numbers.
   void send(int unit) {
     Task task{};
     task.opcode = opcodes_[unit][random_() % opcodes_[unit].size()];

@@ -85,7 +85,7 @@ class Bench {
     bench_.clock();
     ++cycle_;
   }
-  /// Nothing more is wanted, and everybody gets what it wants.
+  /// Nothing more is wanted, and every lane gets what it wants.
   void drain() {
     const auto wants = [&] {
       for (uint32_t lane = 0; lane < kLanes; ++lane) {

@@ -89,7 +89,7 @@ class Bench {
     bench_.clock();
     ++cycle_;
   }
-  /// Nothing more is asked, and everybody gets what it wants.
+  /// Nothing more is asked, and every lane gets what it wants.
   void drain() {
     for (uint32_t i = 0; i < 5000 && !(cache_.idle() && !looks_ && on_way_.empty()); ++i)
       ASSERT_NO_FATAL_FAILURE(clock({0, 3, 3, 1, 1, 0}));
