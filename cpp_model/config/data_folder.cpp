@@ -1,6 +1,8 @@
 #include "config/data_folder.hpp"
 
 #include <filesystem>
+#include <fstream>
+#include <ios>
 #include <string>
 
 namespace raypool {
@@ -39,5 +41,12 @@ bool installed() {
 }
 
 std::string data_folder() { return installed() ? beside_program().string() : checkout().string(); }
+
+std::string program_command() {
+  std::ifstream words("/proc/self/cmdline", std::ios::binary);
+  std::string first;
+  std::getline(words, first, '\0');
+  return first.empty() ? "raypool" : first;
+}
 
 }  // namespace raypool

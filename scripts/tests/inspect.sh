@@ -39,7 +39,8 @@ differs "a frame" 52 \
 differs "random programs" 45 "in seed [0-9]+.*$arbiter" cosim --programs 100 --no-minimise "${on[@]}"
 stack='inside, [^:]*: PC stack of warp [01] .*look at: rtl/compute/rp_pc_stack.v'
 differs "a PC stack that pops too late" 35 "$stack" cosim --programs 200 --no-minimise "${on[@]}"
-differs "a minimised program" 45 "$arbiter.*saved" cosim --programs 100 --save "$folder/saved" "${on[@]}"
+differs "a minimised program" 45 "$arbiter.*saved; again with: $raypool cosim --replay " \
+  cosim --programs 100 --save "$folder/saved" "${on[@]}"
 differs "a saved program" 45 "$arbiter" cosim --replay "$(echo "$folder"/saved/*.json)" --unit-library "$machine"
 
 # What can be read once only.

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "config/data_folder.hpp"
+
 namespace raypool {
 namespace {
 
@@ -30,6 +32,12 @@ TEST(NewerVerilog, IsAFileChangedAfterTheUnitWasBuilt) {
   EXPECT_EQ(newer_verilog(library, rtl), rtl / "include/rp_isa.vh");
   EXPECT_EQ(newer_verilog(library, folder / "no such folder"), "");
   fs::remove_all(folder);
+}
+
+TEST(ProgramCommand, RunsTheProgramAsItWasCalled) {
+  const std::string command = program_command();
+  EXPECT_EQ(fs::path(command).filename(), fs::read_symlink("/proc/self/exe").filename());
+  EXPECT_TRUE(command.find('/') == std::string::npos || fs::equivalent(command, "/proc/self/exe")) << command;
 }
 
 }  // namespace

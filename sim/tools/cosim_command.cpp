@@ -158,7 +158,8 @@ std::string subject(const std::string& report) {
       const std::string name = fmt::format("{}-seed{}.json", saved.configuration.name, saved.program.seed);
       folder.write(name, to_json(saved));
       folder.publish();
-      text += fmt::format(" and saved; again with: raypool cosim --replay {}", folder.path(name).string());
+      text +=
+          fmt::format(" and saved; again with: {} cosim --replay {}", program_command(), folder.path(name).string());
     } catch (const InputError& error) {
       text += fmt::format(", but not saved: {}", error.what());
     }
@@ -220,7 +221,7 @@ uint64_t run_share(const Share& share, const CosimOptions& options, const std::s
     const RandomProgram program =
         make_random_program(configuration, options.seed + n, options.length, share.machine.units, options.mix);
     run_or_report(*share.cosim, options, program,
-                  fmt::format("raypool cosim {} --units {} --programs 1 --seed {} --length {}{}",
+                  fmt::format("{} cosim {} --units {} --programs 1 --seed {} --length {}{}", program_command(),
                               config_options(configuration), share.machine.units, program.seed, options.length,
                               options.mix.empty() ? "" : " --mix " + options.mix),
                   cycles);

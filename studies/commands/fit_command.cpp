@@ -19,6 +19,7 @@
 #include "cli/version.hpp"
 #include "commands/commands.hpp"
 #include "commands/special_values.hpp"
+#include "config/data_folder.hpp"
 #include "config/unused_fields.hpp"
 #include "files/json_text.hpp"
 #include "files/output_files.hpp"
@@ -287,7 +288,7 @@ int fit_command(const FitOptions& options) {
   const std::string shown = options.out.empty() ? fs::proximate(out).lexically_normal().string() : options.out;
   if (!options.json.empty()) files.write(options.json, json_of(found, shown));
   files.publish();
-  fmt::print("{}results   {}: raypool sim --config {}\n", table_of(found), shown, shown);
+  fmt::print("{}results   {}: {} sim --config {}\n", table_of(found), shown, program_command(), shown);
   return kDone;
 }
 
