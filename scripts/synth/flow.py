@@ -161,9 +161,9 @@ def phases_of(options, report=True):
         "time": "time the netlist",
     }
     if options.rounds:
-        found["close"] = "map for speed what lies on failing paths"
+        found["close"] = "map again, for speed, the blocks on paths that miss the clock"
     if options.rounds == CLOSURE_ROUNDS:
-        found["recover"] = "recover area where the clock allows it"
+        found["recover"] = "recover area: map again, for area, the blocks that have time to spare"
     if report:
         found["report"] = "trace the slowest path and write the report"
     return found
@@ -189,10 +189,12 @@ def mapper_of(design):
     return mapping.Mapper(design.library, BUILD, design.clock_ns, options.jobs, thorough, design.phases)
 
 
-def map_design(design):
+def map_design(design, again_for=""):
+    """Maps what is not kept yet; `again_for`: speed or area, where all of it has been mapped before."""
     mapper = mapper_of(design)
     stay = {k.identity for k in design.blocks()}
-    paths = mapper.map_all([k for k in design.kinds.values() if k.identity not in stay], design.efforts)
+    kinds = [k for k in design.kinds.values() if k.identity not in stay]
+    paths = mapper.map_all(kinds, design.efforts, again_for)
     design.netlist = Netlist(design.kinds, paths, design.library, design.top)
     design.buffers = fanout.repair(design.netlist)
     design.netlist.write(design.verilog)
@@ -258,7 +260,7 @@ def lower_efforts(design, mapper):
         small = mapper.result(kind, 0)["way"] == "area"
         slower[identity] = [*range(effort), *([] if small else [mapping.AREA_EFFORT])]
     late = [i for i, efforts in slower.items() if mapping.AREA_EFFORT in efforts]
-    mapper.map_all([design.kinds[i] for i in late], dict.fromkeys(late, mapping.AREA_EFFORT))
+    mapper.map_all([design.kinds[i] for i in late], dict.fromkeys(late, mapping.AREA_EFFORT), "area")
     worth = WORTH_TRYING * sum(netlist.own_area(i) * n for i, n in places.items())
     found = {}
     for identity, efforts in slower.items():
@@ -285,7 +287,7 @@ def win_back(design, work, slack):
         return slack
     while lower:
         design.efforts.update({i: efforts[0] for i, efforts in lower.items()})
-        map_design(design)
+        map_design(design, "area")
         reached = time_design(design, work)
         names = elaborate.in_words(design.kinds[i] for i in lower)
         design.phases.note(f"slack {reached:+.3f} ns; for area: {names}")
@@ -317,7 +319,7 @@ def close_timing(design, work, slack):
         turn = f"round {number} of at most {design.options.rounds}"
         design.phases.note(f"{turn}: slack {slack:+.3f} ns; for speed: {names}")
         design.efforts.update({i: design.efforts.get(i, 0) + 1 for i in more})
-        map_design(design)
+        map_design(design, "speed")
         slack = time_design(design, work)
         if slack > best:
             best, efforts = slack, dict(design.efforts)

@@ -267,9 +267,9 @@ write_json {result}
         path = self.path(kind, effort)
         return path if os.path.exists(path) else None
 
-    def map_all(self, kinds, efforts=None):
-        """Maps what is not kept yet; `efforts`: by identity, where it is not the first.
-        Returns the paths of the results, by identity.
+    def map_all(self, kinds, efforts=None, again_for=""):
+        """Maps what is not kept yet; `efforts`: by identity, where it is not the first; `again_for`: speed or area,
+        where all of them have been mapped before. Returns the paths of the results, by identity.
         """
         efforts = efforts or {}
         new = f"{self.constraints}.{os.getpid()}"
@@ -280,9 +280,9 @@ write_json {result}
         of_path = {self.path(k, efforts.get(k.identity, 0)): k for k in kinds}
         missing = [k for path, k in of_path.items() if not os.path.exists(path)]
         if missing:
-            speed = " for speed" if efforts else ""
+            again = f" again, for {again_for}" if again_for else ""
             kept = f"; {len(kinds) - len(missing)} are kept" if len(missing) < len(kinds) else ""
-            self.phases.note(f"{len(missing)} kinds of block to map{speed}{kept}")
+            self.phases.note(f"{len(missing)} kinds of block to map{again}{kept}")
         # The large ones first, so that the last to finish is a small one.
         missing.sort(key=lambda k: -k.bits)
         left = Remaining(missing)

@@ -337,6 +337,22 @@ class Synthesis(SmallBlocks):
             mapping.Mapper(library.Library(), self.folder, 4.0).map_all(kinds[:2])
         self.assertEqual(sorted(line.split(": ")[-1] for line in printed[1:]), ["float_lane", "multiply_tree"])
 
+    def test_kinds_that_are_mapped_again_are_said_to_be_and_what_for(self):
+        kinds = [elaborate.Kind(str(n), "adder", {}, {}, {}, f"adder{n}") for n in range(2)]
+        for again_for, words in (("", ""), ("speed", " again, for speed"), ("area", " again, for area")):
+            printed = []
+            with mock.patch.object(phases, "progress", printed.append), \
+                 mock.patch.multiple(mapping.Mapper, map_one=lambda self, kind, effort: kind,
+                                     path=lambda self, kind, effort: f"{self.folder}/{kind.name}"):  # fmt: skip
+                mapping.Mapper(library.Library(), self.folder, 4.0).map_all(kinds, {"0": 4}, again_for)
+            self.assertEqual(printed[0], f"synth: 2 kinds of block to map{words}")
+
+    def test_a_lane_that_is_larger_than_its_goal_is_said_to_miss_it(self):
+        for kge, words in ((11.99, ": met"), (12.0, ": met"), (12.48, ": missed")):
+            line = report.lane_line("Flt lane", {"kge": kge, "goal_kge": 12.0})
+            self.assertEqual(line, f"Flt lane {kge:.2f} kGE, goal at most 12{words}")
+        self.assertEqual(report.lane_line("Slw lane", {"kge": 9.0, "goal_kge": None}), "Slw lane 9.00 kGE")
+
     def test_a_file_is_reported_by_its_name_and_not_by_its_folder(self):
         options = flow.Options(config="/elsewhere/configurations/4w4c+1_change.json", units=2, rounds=6)
         self.assertEqual(options.title, "4w4c+1_change-chip-2cu")
@@ -486,6 +502,7 @@ class Whole(SmallBlocks):
         # The thesis' area is that of a unit; of the chip every block is reported, however small.
         printed = report.table(made)
         self.assertNotIn("thesis", printed)
+        self.assertRegex(printed, r"\nmissed   the clock: no block\n")
         self.assertTrue(printed.startswith("1w1c-chip-2cu "))
         told = {line.split()[0] for line in printed.splitlines()[2:] if line.strip()}
         self.assertLessEqual(first | {"chip"}, told)
