@@ -42,7 +42,7 @@ std::vector<bool> find_possible(const Function& function) {
 
 void remove_unreached(Function& function) {
   const std::vector<bool> may = find_possible(function);
-  const auto is_nobody = [&](const Op& op) {
+  const auto is_for_no_lane = [&](const Op& op) {
     return op.kind == Op::Kind::Instruction && !op.guard.negated && op.guard.predicate != 0 &&
            !may[static_cast<size_t>(op.guard.predicate)];
   };
@@ -56,7 +56,7 @@ void remove_unreached(Function& function) {
     }
     const bool jumps = is(op, Opcode::Jnone) || is(op, Opcode::Loop);
     // It changes the slice of the whole warp, under an empty mask too.
-    const bool stays = !is_nobody(op) || op.info->kind == raypool::Kind::Swap;
+    const bool stays = !is_for_no_lane(op) || op.info->kind == raypool::Kind::Swap;
     if (stays)
       kept.push_back(op);
     else if (jumps)

@@ -70,7 +70,7 @@ TEST(Unreached, IsNotWhatLanesJoinLater) {
   EXPECT_EQ(count(function, Opcode::St), 8);
 }
 
-TEST(Unreached, IsALoopThatNobodyEnters) {
+TEST(Unreached, IsALoopThatNoLaneEnters) {
   const Function function = left_of([](Recorder& recorder, RecordedKernel& kernel, int no_lane) {
     recorder.begin_loop(no_lane, {});
     store_some(kernel, 3);

@@ -279,7 +279,7 @@ TEST_P(RandomShaderSets, LeaveWhatTheirSpirvLeaves) {
 INSTANTIATE_TEST_SUITE_P(Tens, RandomShaderSets, testing::Range(0u, 3u));
 INSTANTIATE_TEST_SUITE_P(FurtherTens, RandomShaderSets, testing::Range(3u, 10u));
 
-TEST(RandomShaderSet, OfASeedThatFoundAMistakeLeavesWhatItsSpirvLeaves) {
+TEST(RandomShaderSet, OfASeedThatFoundABugLeavesWhatItsSpirvLeaves) {
   // A variable that a loop only wrote, in memory that another one was given.
   Outcome outcome;
   for (const uint32_t seed : {222u}) ASSERT_NO_FATAL_FAILURE(compare_random_set(seed, outcome));

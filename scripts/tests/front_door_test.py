@@ -68,7 +68,7 @@ class Help(unittest.TestCase):
         self.assertEqual(named_targets(studies), re.findall(r"^([a-z-]+):.*## ", (ROOT / STUDIES).read_text(), re.M))
         self.assertIn("fit", named_targets(studies))
 
-    def test_help_all_tells_every_variable_that_has_a_default(self):
+    def test_help_all_lists_every_variable_that_has_a_default(self):
         listed = {name for _, name in variables()}
         self.assertGreater(len(listed), 50)
         self.assertEqual(set(DEFAULTS) - listed, set())

@@ -511,7 +511,7 @@ class Whole(SmallBlocks):
         with self.assertRaisesRegex(SynthError, "add up"):
             report.check(made)
 
-    def test_power_of_a_chip_is_told_by_place_and_adds_up(self):
+    def test_power_of_a_chip_is_reported_by_place_and_adds_up(self):
         design = self.mapped_chip(2, {"frame_port", "launcher", "event_counter"})
         os.makedirs(os.path.join(self.folder, "power"))
         toggles, accesses = {}, {}

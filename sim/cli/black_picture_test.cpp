@@ -13,12 +13,12 @@ FrameContribution contribution(float red) {
   return result;
 }
 
-RayCounts counts(uint64_t eye, uint64_t missed, uint64_t shadow, uint64_t in_vain) {
+RayCounts counts(uint64_t eye, uint64_t missed, uint64_t shadow, uint64_t wasted) {
   RayCounts rays;
   rays.eye.traced = eye;
   rays.eye.ended = rays.eye.futile = missed;
   rays.shadow.traced = shadow;
-  rays.shadow.futile = in_vain;
+  rays.shadow.futile = wasted;
   return rays;
 }
 

@@ -162,7 +162,7 @@ Population population(uint32_t known, double slope, double noise) {
   return made;
 }
 
-void is_honest(const Found& found) {
+void covers_the_value(const Found& found) {
   EXPECT_GE(found.contained, 0.93);
   EXPECT_LE(found.contained, 0.98);
   EXPECT_LT(std::fabs(found.error), 0.15 * found.half_width);
@@ -172,31 +172,33 @@ void is_honest(const Found& found) {
 TEST(Estimate, ContainsTheTruthInTheStatedShareOfSamples) {
   Population here = population(1, 0, 1);
   for (size_t i = 0; i < here.known.size(); ++i) here.known[i] = {};
-  is_honest(sampled(here, 10, 40));
+  covers_the_value(sampled(here, 10, 40));
 }
 
-TEST(Estimate, IsHonestAndNarrowWhereWhatIsKnownPredictsWell) {
+TEST(Estimate, CoversTheValueAndIsNarrowWhereWhatIsKnownPredictsWell) {
   const Population here = population(4, 6, 0.5);
   Population unknown = here;
   for (Known& known : unknown.known) known.resize(1);
   const Found with = sampled(here, 10, 40), without = sampled(unknown, 10, 40);
-  is_honest(with);
+  covers_the_value(with);
   EXPECT_LT(with.half_width, 0.6 * without.half_width);
 }
 
-TEST(Estimate, IsHonestAndHardlyWiderWhereWhatIsKnownPredictsNothing) {
+TEST(Estimate, CoversTheValueAndIsHardlyWiderWhereWhatIsKnownPredictsNothing) {
   Population here = population(1, 0, 4);
   const Found without = sampled(here, 10, 40);
-  is_honest(without);
+  covers_the_value(without);
   std::mt19937 random(7);
   for (Known& known : here.known)
     for (int k = 0; k < 4; ++k) known.push_back(static_cast<double>(random() % 1000));
   const Found with = sampled(here, 10, 40);
-  is_honest(with);
+  covers_the_value(with);
   EXPECT_LT(with.half_width, 1.2 * without.half_width);
 }
 
-TEST(Estimate, IsHonestWithFewerBlocksThanThingsKnown) { is_honest(sampled(population(40, 20, 1), 8, 24)); }
+TEST(Estimate, CoversTheValueWithFewerBlocksThanThingsKnown) {
+  covers_the_value(sampled(population(40, 20, 1), 8, 24));
+}
 
 }  // namespace
 }  // namespace raypool::sampled
