@@ -52,19 +52,19 @@ def file_of(module):
 
 
 def files_of(rtl):
-    """{name: path} of the Verilog in a folder's rooms: each name is there once."""
+    """{name: path} of the Verilog below a folder: each name is there once."""
     return {path.name: path for path in rtl.rglob("*") if path.suffix in (".v", ".vh", ".vlt")}
 
 
 def write_folder(folder, texts):
-    """The folder has these files, in the rooms of rtl/, and no others; what is as it was is left alone, so that nothing
-    is built again for it."""
+    """The folder has these files, in the subfolders of rtl/, and no others; what is as it was is left alone, so that
+    nothing is built again for it."""
     for path in files_of(folder).values():
         if path.name not in texts:
             path.unlink()
-    rooms = {name: path.parent.relative_to(ROOT / "rtl") for name, path in files_of(ROOT / "rtl").items()}
+    places = {name: path.parent.relative_to(ROOT / "rtl") for name, path in files_of(ROOT / "rtl").items()}
     for name, text in texts.items():
-        path = folder / rooms[name] / name
+        path = folder / places[name] / name
         path.parent.mkdir(parents=True, exist_ok=True)
         if not path.exists() or path.read_text() != text:
             path.write_text(text)
