@@ -85,8 +85,9 @@ class Remaining:
     LEAST_SHARE = 0.3
     # What is shorter is not worth a word.
     LEAST_SECONDS = 30
-    # Reading the Verilog and the library takes as long for a small kind as the logic of so many bits.
-    FIXED = 10000
+    # Reading the Verilog and the library takes as long for every kind as the logic of so many bits: most of the time of
+    # a small one. Measured with 4w4c (scripts/tests/synth_test.py).
+    FIXED = 20000
 
     def __init__(self, kinds, now=time.monotonic):
         self.all = sum(kind.bits + self.FIXED for kind in kinds)
@@ -94,12 +95,17 @@ class Remaining:
         self.now = now
         self.begun = now()
 
-    def after(self, kind):
-        """When `kind` is done too: words that go behind a line, or none where nothing can be said."""
+    def seconds_after(self, kind):
+        """When `kind` is done too; None where nothing can be said."""
         self.done += kind.bits + self.FIXED
         share = self.done / self.all
         left = (self.now() - self.begun) * (1 / share - 1)
-        return f", about {about(left)} left" if share >= self.LEAST_SHARE and left >= self.LEAST_SECONDS else ""
+        return left if share >= self.LEAST_SHARE and left >= self.LEAST_SECONDS else None
+
+    def after(self, kind):
+        """When `kind` is done too: words that go behind a line, or none where nothing can be said."""
+        left = self.seconds_after(kind)
+        return "" if left is None else f", about {about(left)} left"
 
 
 class Mapper:

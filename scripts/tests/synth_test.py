@@ -17,6 +17,15 @@ from synth import timing
 from synth.errors import SynthError
 from synth.memories import MemoryModel
 
+# Of each kind of block of 4w4c its size in bits, and the seconds that a processor took to map it.
+MAPPED = [
+    (32042, 11), (31535, 7), (25635, 5), (24727, 6), (15130, 5), (13659, 13), (12455, 4), (11968, 5), (11556, 9),
+    (8963, 15), (7465, 55), (7072, 5), (6725, 8), (6056, 9), (5965, 6), (5828, 7), (3797, 6), (3506, 7), (3330, 5),
+    (3211, 6), (3159, 5), (3029, 8), (2997, 7), (2783, 7), (2783, 7), (2783, 6), (2532, 4), (2254, 6), (2141, 7),
+    (1949, 6), (1675, 6), (1607, 6), (1267, 6), (1160, 6), (1059, 6), (1047, 5), (993, 10), (776, 6), (730, 5),
+    (552, 6), (509, 5), (509, 5), (304, 5), (234, 8), (150, 5), (149, 5), (149, 6), (149, 5), (136, 4), (53, 5),
+    (42, 5), (19, 6), (14, 5), (6, 4), (5, 4), (2, 4), (0, 5),
+]
 # One port; the semicolon after `when` is missing in files that are in use.
 MACRO = """library (of_a_memory) { time_unit : "1ns"; cell (sram_64x20) {
   area : 4000; memory () { type : ram; address_width : 6; word_width : 20; }
@@ -320,11 +329,30 @@ class Synthesis(SmallBlocks):
         self.assertNotIn("last time", again[2])
 
     def test_mapping_says_how_long_it_still_takes_when_it_knows(self):
-        # Of 100 thousand in all, what each costs whatever its size included.
-        kinds = [mock.Mock(bits=bits) for bits in (10000, 20000, 30000, 0)]
+        # Of 200,000 in all, what each costs at any size included.
+        kinds = [mock.Mock(bits=bits) for bits in (20000, 40000, 60000, 0)]
         seconds = iter((0, 60, 100, 180, 200))
         left = mapping.Remaining(kinds, lambda: next(seconds))
         self.assertEqual([left.after(kind) for kind in kinds], ["", ", about 2 min left", "", ""])
+
+    def test_the_time_that_mapping_still_takes_is_right_to_a_third(self):
+        # Two processors take one kind after another, the largest first, as map_all() has them do.
+        free, ends = [0, 0], []
+        for bits, seconds in MAPPED:
+            end = min(free) + seconds
+            free[free.index(min(free))] = end
+            ends.append((end, bits))
+        now = 0
+        left = mapping.Remaining([mock.Mock(bits=bits) for bits, _ in MAPPED], lambda: now)
+        said = []
+        for now, bits in sorted(ends):
+            seconds = left.seconds_after(mock.Mock(bits=bits))
+            if seconds is not None:
+                said.append((seconds, max(free) - now))
+        self.assertGreater(len(said), 20)
+        self.assertGreater(said[0][1], 0.6 * max(free))
+        for seconds, true in said:
+            self.assertAlmostEqual(seconds / true, 1, delta=0.34, msg=f"{seconds:.0f} s where {true} s were left")
 
     def test_progress_names_modules_and_counts_their_kinds(self):
         kinds = [elaborate.Kind(str(n), base, {}, {}, {}, f"{base}_a_bits{n}_b_bits25")
