@@ -337,8 +337,8 @@ def lockstep(design, library, folder, arguments, engine="lockstep"):
     """Runs raypool on the netlist; returns (passed, output). Of a chip always in lockstep with the model."""
     units = design.options.units
     chip = ["--boundary", "chip", "--units", str(units)] if units else []
-    plays = ["--engine", "lockstep" if units else engine, *chip]
-    command = [elaborate.raypool(), *arguments, "--config", design.options.config, *plays, "--unit-library", library]
+    engines = ["--engine", "lockstep" if units else engine, *chip]
+    command = [elaborate.raypool(), *arguments, "--config", design.options.config, *engines, "--unit-library", library]
     if arguments[0] == "sim":
         command += ["--out", os.path.join(folder, "picture"), "--quiet"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -59,7 +59,7 @@ struct SimOptions {
   std::string trace;                    ///< window of cycles (trace::parse_window()); empty: no trace
   bool modules = false;                 ///< print the modules of the chip, and draw nothing
   std::optional<uint64_t> cycle_limit;  ///< of engines model, rtl and lockstep
-  uint64_t inspect_until = 0;  ///< cycle of a difference that a look inside the RTL is to tell more of; 0: no look
+  uint64_t inspect_until = 0;  ///< cycle of a difference that a look inside the RTL is to show more of; 0: no look
   bool json = false;           ///< the report on standard output, instead of the table
   bool quiet = false;          ///< no progress, no table
   std::vector<std::string> command;  ///< the command line, for the report
