@@ -79,6 +79,8 @@ struct Configuration {
         return triples;
       case Feature::FusedTriples:
         return fma && triples;
+      case Feature::Sharing:
+        return sharing;
       default:
         return true;
     }

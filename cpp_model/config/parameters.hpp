@@ -42,6 +42,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
        "with more than four lanes: rld and rst move a word of all of them in a cycle, an import eight words") \
   UNIT(slow_lanes, uint32_t, 32, powers_of_two(1, 32), tried(1, 2, 32), \
        "lanes of an instance of slw at most: with fewer than the unit has, a task takes them one group after another") \
+  UNIT(sharing, bool, false, on_or_off(), all(), \
+       "instructions unit and inval, with which threads of several units share memory") \
   UNIT(intersection_words, uint32_t, 21, integers(12, 21), tried(12, 16, 21), \
        "words of an intersection on its port and in ray memory: 21, or those that the kernels need") \
   UNIT(registers, uint32_t, 16, integers(8, 16), tried(8, 12, 16), "registers of a thread, from r0 on") \

@@ -128,6 +128,7 @@ enum class Feature : uint8_t {
   FusedMultiplyAdd,  ///< arithmetic.fma
   Triples,           ///< triples
   FusedTriples,      ///< both
+  Sharing,      ///< sharing
 };
 
 // The instructions, a row each. Programs drawn at random depend on the order of the rows.
@@ -236,6 +237,11 @@ enum class Feature : uint8_t {
       "ld, three times; bits 3:2 of the offset are 0, and become the element's number", Feature::Triples) \
   ROW(Rld3,    Ray, 19, Rd, Word, None, None, None, Plain, "rld, three times", Feature::Triples) \
   ROW(Rst3,    Ray, 20, Word, B, None, None, Float, Plain, "rst, three times", Feature::Triples) \
+  /* What units need to share memory */ \
+  ROW(Unit,    Tid, 7,  Rd, None, None, None, None, Plain, "rd = number of the compute unit, from 0", \
+      Feature::Sharing) \
+  ROW(Inval,   Mem, 2,  Address, None, None, None, None, Plain, \
+      "the data cache forgets the line of ra + immediate: the next load reads the memory", Feature::Sharing) \
   /* The table ends here: the backslash above lets a row follow it. */
 // clang-format on
 
@@ -289,11 +295,10 @@ inline constexpr InstructionInfo kInstructions[] = {
 #undef RAYPOOL_ROW
 };
 
-/// Rows that are no triples, which stand behind them.
+/// Rows in front of the triples, behind which stands what several units need.
 inline constexpr size_t kSingles = [] {
   size_t rows = 0;
-  for (const InstructionInfo& info : kInstructions)
-    rows += info.needs != Feature::Triples && info.needs != Feature::FusedTriples ? 1 : 0;
+  while (kInstructions[rows].needs != Feature::Triples && kInstructions[rows].needs != Feature::FusedTriples) ++rows;
   return rows;
 }();
 

@@ -200,7 +200,7 @@ TEST(Triples, OfAnInstructionIsFoundByItsElement) {
       EXPECT_EQ(element(Instruction{triple}, 2).info, &info);
     }
   }
-  EXPECT_EQ(found, static_cast<int>(std::size(kInstructions) - kSingles));
+  EXPECT_EQ(found, std::count_if(std::begin(kInstructions), std::end(kInstructions), is_triple));
 }
 
 /// Whether one of the elements, executed one after the other, reads a register that an earlier one has written.

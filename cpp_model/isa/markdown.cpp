@@ -57,6 +57,7 @@ const char* marks(const InstructionInfo& info) {
   if (info.needs == Feature::Triples) return "*t*";
   if (info.needs == Feature::FusedTriples) return "*t fma*";
   if (info.needs == Feature::Optional) return "*o*";
+  if (info.needs == Feature::Sharing) return "*s*";
   return info.kind == Kind::Control ? "*c*" : "";
 }
 
@@ -78,9 +79,9 @@ constexpr const char* kText = R"(
 `target` and `end` are the halves of the immediate of `jany`, `jnone` and `call`; `loop` has its end in the low half.
 Fields that an instruction does not use are written as 0 by the assembler and ignored by the machine. An instruction
 with unit and operation in no row below is illegal, and so is one that the configuration has not: `ffma` without
-`arithmetic.fma`, a triple without `triples`, `ffma3` and `ffma3s` without both, and one with an *o* that its type's
-`without` names. One that names a register, predicate or argument which the configuration has not (`registers`,
-`predicates`, `arguments`) is illegal too; of a triple those of all elements count.
+`arithmetic.fma`, a triple without `triples`, `ffma3` and `ffma3s` without both, `unit` and `inval` without `sharing`,
+and one with an *o* that its type's `without` names. One that names a register, predicate or argument which the
+configuration has not (`registers`, `predicates`, `arguments`) is illegal too; of a triple those of all elements count.
 
 A target, an end or an entry that does not fit into `pc_bits` is the greatest PC there is. It is outside of every
 program: of 16 bits, FFFF hex.
@@ -151,7 +152,7 @@ std::string isa_markdown() {
       "the type's\n"
       "`without` names them, those marked *t* with "
       "`triples` "
-      "only,\nthose marked *t fma* with both only.\n";
+      "only,\nthose marked *t fma* with both only, those marked *s* with `sharing` only.\n";
   for (const AluType type : kEveryAluType) {
     text += fmt::format("\n### {}: {} (type {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
                         alu_info(type).name, alu_info(type).title, to_underlying(type));

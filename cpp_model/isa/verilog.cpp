@@ -238,6 +238,8 @@ std::string isa_verilog_functions() {
                           [](const InstructionInfo& info) { return info.needs == Feature::Triples; });
   text += function_of_row("isa_legal_fused_triple_op", "machines with both have this instruction",
                           [](const InstructionInfo& info) { return info.needs == Feature::FusedTriples; });
+  text += function_of_row("isa_legal_sharing_op", "machines with sharing have this instruction",
+                          [](const InstructionInfo& info) { return info.needs == Feature::Sharing; });
   text +=
       function_of_row("isa_triple_of_words", "the instruction accesses three words of a ray package",
                       [](const InstructionInfo& info) { return is_triple(info) && has_operand(info, Operand::Word); });
@@ -251,11 +253,13 @@ std::string isa_verilog_functions() {
       "    input [63:0] encoding;\n"
       "    input fma;\n"
       "    input triples;\n"
+      "    input sharing;\n"
       "    input [4:0] package_words;\n"
       "    input lacking;\n"
       "    begin\n"
       "      isa_legal = isa_legal_op(encoding) || (!lacking && isa_optional_op(encoding)) ||\n"
       "                  (fma && isa_legal_fma_op(encoding)) ||\n"
+      "                  (sharing && isa_legal_sharing_op(encoding)) ||\n"
       "                  (triples && isa_legal_triple_op(encoding) &&\n"
       "                   !(isa_triple_of_words(encoding) && {} > package_words - 5'd{})) ||\n"
       "                  (fma && triples && isa_legal_fused_triple_op(encoding));\n"

@@ -110,6 +110,7 @@ Step step_of(Opcode opcode) {
     case Opcode::Block:
     case Opcode::Threads:
     case Opcode::Blocks:
+    case Opcode::Unit:
     case Opcode::Rld:
     case Opcode::Rst:
       return Step::Mov;
@@ -117,6 +118,7 @@ Step step_of(Opcode opcode) {
       return Step::Load;
     case Opcode::St:
       return Step::Store;
+    case Opcode::Inval:  // there is no cache
     case Opcode::Rin:
       return Step::Import;
     case Opcode::Rout:
@@ -181,6 +183,7 @@ struct FunctionRunner::Builder {
   void find_constants(const Op& op) {
     if (op.kind == Op::Kind::Instruction && has_operand(*op.info, Operand::B) && op.b_is_immediate)
       constant(op.immediate);
+    if (is(op, Opcode::Unit)) constant(0);
   }
 
   /// The value that such an op gives whenever it is executed, or 0.
@@ -196,6 +199,8 @@ struct FunctionRunner::Builder {
         return kIndices + 2;
       case Opcode::Blocks:
         return kIndices + 3;
+      case Opcode::Unit:
+        return constant(0);  // there is one
       default:
         return 0;
     }
@@ -295,6 +300,7 @@ struct FunctionRunner::Builder {
         break;
     }
     if (op.rd != kNothing && writes_register(*op.info) && alias[index(op.rd)] != 0) return;
+    if (is(op, Opcode::Inval)) return;
     enter(op.guard);
     switch (op.info->opcode) {
       case Opcode::Ld:
@@ -313,6 +319,7 @@ struct FunctionRunner::Builder {
       case Opcode::Block:
       case Opcode::Threads:
       case Opcode::Blocks:
+      case Opcode::Unit:
         return add(step, value(op.rd), fixed_value(op), 0, 0);
       default:
         break;

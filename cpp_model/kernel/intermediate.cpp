@@ -70,8 +70,10 @@ Effects effects(const Op& op) {
 }
 
 bool is_pure(const Op& op) {
-  return op.kind == Op::Kind::Instruction && (writes_register(*op.info) || writes_predicate(*op.info));
+  return op.kind == Op::Kind::Instruction && !op.fence && (writes_register(*op.info) || writes_predicate(*op.info));
 }
+
+bool changes_memory(const Op& op) { return is(op, Opcode::St) || is(op, Opcode::Inval); }
 
 bool is_copy(const Op& op) {
   if (op.kind != Op::Kind::Instruction) return false;

@@ -63,6 +63,8 @@ struct Op {
   /// Lanes outside the guard need nothing of rd's old value, so that whatever rd's register held before is dead. Of a
   /// Spill::Store: the same of the ray word.
   bool fresh = false;
+  /// Of a load that nobody needs the value of: when it is done, all that the thread has stored is in the memory.
+  bool fence = false;
   Spill spill = Spill::None;
   int slot = kNothing;  ///< of spill memory, if the op stores to it or reloads from it
   Location where;
@@ -113,6 +115,8 @@ Effects effects(const Op& op);
 
 /// True for an instruction that may be left out when its result is never read.
 bool is_pure(const Op& op);
+/// What loads and other such ops stay in front of or behind: a store, and an inval.
+bool changes_memory(const Op& op);
 /// True for a copy of one register or predicate to another, in all lanes that matter.
 bool is_copy(const Op& op);
 /// How many instructions an op is: 3 of a triple.

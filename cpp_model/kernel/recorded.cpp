@@ -35,6 +35,19 @@ void RecordedKernel::store_number(const Int& address, int offset, int value, con
   op.immediate = static_cast<uint32_t>(offset);
 }
 
+void RecordedKernel::invalidate(const Int& address, int offset, const Location& where) {
+  Op& op = recorder_.emit(Opcode::Inval, where);
+  op.ra = address.number();
+  op.immediate = static_cast<uint32_t>(offset);
+}
+
+// Requests of a unit reach the memory in their order: what is read there is answered behind the stores.
+void RecordedKernel::wait_for_stores(const Int& address, int offset, const Location& where) {
+  invalidate(address, offset, where);
+  load(address, offset, where);
+  recorder_.last_op().fence = true;
+}
+
 // A ray's words are exported from their own places, whatever is imported there.
 uint8_t RecordedKernel::place(int number, const Location& where) const {
   check("ray word", number, kIntersectionWords, where);

@@ -292,6 +292,7 @@ class RecordedKernel {
   Int block(Location where = Location::here()) { return index(Opcode::Block, where); }
   Int threads(Location where = Location::here()) { return index(Opcode::Threads, where); }
   Int blocks(Location where = Location::here()) { return index(Opcode::Blocks, where); }
+  Int unit(Location where = Location::here()) { return index(Opcode::Unit, where); }
   Int int_argument(int number, Location where = Location::here()) {
     return recorded::int_value(argument(number, where));
   }
@@ -311,6 +312,11 @@ class RecordedKernel {
   void store(const Int& address, int offset, const Float& value, Location where = Location::here()) {
     store_number(address, offset, value.number(), where);
   }
+
+  /// The data cache forgets the line, so that a load sees what another unit has stored.
+  void invalidate(const Int& address, int offset, const Location& where = Location::here());
+  /// Waits until all that the thread has stored is in the memory, where other units see it: no ray leaves before.
+  void wait_for_stores(const Int& address, int offset, const Location& where = Location::here());
 
   void ray_in(Location where = Location::here()) { recorder_.emit(Opcode::Rin, where); }
   void ray_out(Location where = Location::here()) { recorder_.emit(Opcode::Rout, where); }

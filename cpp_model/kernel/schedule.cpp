@@ -50,7 +50,7 @@ class Piece {
     std::map<int, size_t> word_written;
     std::map<int, std::vector<size_t>> word_read;
     std::vector<size_t> words_since_swap, loads;
-    int last_store = kNothing, last_swap = kNothing;
+    int last_store = kNothing, last_swap = kNothing, last_fence = kNothing;
     const auto behind = [&](size_t op, int earlier) {
       if (earlier != kNothing) stays_behind(op, static_cast<size_t>(earlier));
     };
@@ -78,17 +78,19 @@ class Piece {
       if (op.kind == Op::Kind::Undefined) continue;
       if (op.info->alu() == AluType::Mem) {
         behind(i, last_store);
-        if (is(op, Opcode::St)) {
+        if (changes_memory(op)) {
           for (const size_t load : loads) stays_behind(i, load);
           loads.clear();
           last_store = static_cast<int>(i);
         } else {
           loads.push_back(i);
         }
+        if (op.fence) last_fence = static_cast<int>(i);
       }
       if (op.info->alu() != AluType::Ray) continue;
       behind(i, last_swap);
       if (op.info->kind == raypool::Kind::Swap) {
+        behind(i, last_fence);
         for (const size_t word : words_since_swap) stays_behind(i, word);
         words_since_swap.clear();
         word_written.clear();

@@ -1,11 +1,13 @@
-// For tests: runs machine code of one warp on one ray slice, written from docs/machine/isa.md and
-// docs/machine/architecture.md alone.
+// For tests: runs machine code of one warp on one ray slice, written from docs/machine/isa.md,
+// docs/machine/architecture.md and docs/machine/memory.md alone.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "arith/arith.hpp"
@@ -14,6 +16,42 @@
 #include "kernel/native.hpp"
 
 namespace raypool::test {
+
+/// Data caches of several units, which do not see each other's stores; those of a unit reach the memory when it has to
+/// read there, which is as late as can be.
+class UnitCaches {
+ public:
+  explicit UnitCaches(uint32_t units) : units_(units) {}
+
+  uint32_t load(Memory& memory, uint32_t unit, uint32_t address) {
+    auto& lines = units_.at(unit).lines;
+    const auto [found, is_new] = lines.try_emplace(address / kLineBytes);
+    if (is_new) {
+      drain(memory, unit);
+      for (uint32_t i = 0; i < found->second.size(); ++i)
+        found->second[i] = memory.load(found->first * kLineBytes + 4 * i);
+    }
+    return found->second[address % kLineBytes / 4];
+  }
+  void store(uint32_t unit, uint32_t address, uint32_t value) {
+    const auto line = units_.at(unit).lines.find(address / kLineBytes);
+    if (line != units_[unit].lines.end()) line->second[address % kLineBytes / 4] = value;
+    units_[unit].stores.emplace_back(address, value);
+  }
+  void inval(uint32_t unit, uint32_t address) { units_.at(unit).lines.erase(address / kLineBytes); }
+  void drain(Memory& memory, uint32_t unit) {
+    for (const auto& [address, value] : units_.at(unit).stores) memory.store(address, value);
+    units_[unit].stores.clear();
+  }
+
+ private:
+  static constexpr uint32_t kLineBytes = 64;
+  struct Unit {
+    std::map<uint32_t, std::array<uint32_t, kLineBytes / 4>> lines;
+    std::vector<std::pair<uint32_t, uint32_t>> stores;  // address, value
+  };
+  std::vector<Unit> units_;
+};
 
 class Interpreter {
  public:
@@ -28,6 +66,8 @@ class Interpreter {
   std::array<std::vector<Ray>, kLanes> rays;
   std::array<std::vector<FrameContribution>, kLanes> frame;
   uint64_t executed = 0;
+  UnitCaches* caches = nullptr;  ///< null: there is one unit, whose cache shows in nothing
+  uint32_t unit = 0;             ///< that runs the warp
 
   void run(const Program& program, uint32_t entry) {
     for (auto& lane : registers_) lane.fill(0xbad0bad0u);
@@ -135,7 +175,19 @@ class Interpreter {
     if (opcode == Opcode::Pxor) return px != predicate(op.rb);
     if (opcode == Opcode::Pandn) return px && !predicate(op.rb);
     if (opcode == Opcode::St) {
-      memory.store(a + op.immediate, b);
+      if (caches == nullptr)
+        memory.store(a + op.immediate, b);
+      else
+        caches->store(unit, a + op.immediate, b);
+      return false;
+    }
+    if (opcode == Opcode::Inval) {
+      if (caches != nullptr) caches->inval(unit, a + op.immediate);
+      return false;
+    }
+    if (opcode == Opcode::Ld) {
+      const uint32_t address = a + op.immediate;
+      reg[op.rd] = caches == nullptr ? memory.load(address) : caches->load(memory, unit, address);
       return false;
     }
     if (opcode == Opcode::Rst) {
@@ -154,8 +206,8 @@ class Interpreter {
     if (opcode == Opcode::Block) return block;
     if (opcode == Opcode::Threads) return threads;
     if (opcode == Opcode::Blocks) return blocks;
+    if (opcode == Opcode::Unit) return unit;
     if (opcode == Opcode::Arg) return arguments.at(op.immediate);
-    if (opcode == Opcode::Ld) return memory.load(a + op.immediate);
     if (opcode == Opcode::Rld) return words_[lane].at(op.x);
     if (opcode == Opcode::Mov) return b;
     if (opcode == Opcode::Iadd) return a + b;

@@ -241,7 +241,7 @@ class Segment {
     if (uses(second.predicate_uses, first.predicate_defined) || uses(first.predicate_uses, second.predicate_defined))
       return true;
     if (first.predicate_defined != kNothing && first.predicate_defined == second.predicate_defined) return true;
-    if (a.info->alu() == AluType::Mem && b.info->alu() == AluType::Mem) return is(a, Opcode::St) || is(b, Opcode::St);
+    if (a.info->alu() == AluType::Mem && b.info->alu() == AluType::Mem) return changes_memory(a) || changes_memory(b);
     if (a.info->alu() != AluType::Ray || b.info->alu() != AluType::Ray) return false;
     if (a.info->kind == Kind::Swap || b.info->kind == Kind::Swap) return true;
     const bool reads = !is(a, Opcode::Rst) && !is(a, Opcode::Rst3) && !is(b, Opcode::Rst) && !is(b, Opcode::Rst3);

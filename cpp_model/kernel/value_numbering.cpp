@@ -260,7 +260,7 @@ class Reuse {
     if (!covered && (reads_memory || op.info->alu() == AluType::Slw || !same_operands(first, op))) return false;
     if (reads_memory || is(op, Opcode::Rld)) {
       const auto changes = [&](const Op& between) {
-        return reads_memory ? is(between, Opcode::St) : (words_changed(between) >> op.word & 1) != 0;
+        return reads_memory ? changes_memory(between) : (words_changed(between) >> op.word & 1) != 0;
       };
       if (order_.any_between(earlier, later, changes)) return false;
     }

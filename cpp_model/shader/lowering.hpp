@@ -80,6 +80,8 @@ struct Path {
   /// has called, and of the lanes that have just come a predicate.
   std::optional<Scalar> level, caller;
   std::optional<int> fresh;
+  /// Loads see what the path may have stored in another unit.
+  bool shares_buffers = false;
   /// Predicate: the hit does not count, and the ray goes on behind it. None: all hits count.
   std::optional<int> ignored;
 };
@@ -121,13 +123,15 @@ class Lowering {
   /// Lanes of `starts` begin the shader, others go on behind its sites. `first_word`: of the path's record, for what
   /// they hold.
   void run_waiting(const Waits& waits, const Scalar& starts, uint32_t first_word);
+  void forget_record();
+  void forget(const Scalar& base, uint32_t first, uint32_t last);
   kernel::Function end_paths();
 
  private:
   void constants();
   kernel::Function finished();
   Scalar place_pixel();
-  void place_saved(const Scalar& depth, const Scalar& inside);
+  void place_saved();
   using RecordedInt = kernel::RecordedKernel::Int;
   using RecordedFloat = kernel::RecordedKernel::Float;
   using RecordedBool = kernel::RecordedKernel::Bool;

@@ -254,6 +254,7 @@ void Lowering::load(const Line& line) {
     Scalar low;
     if (pointer.to == Pointer::To::Memory) {
       const auto [base, offset] = address(pointer);
+      if (path_ && path_->shares_buffers) forget(base, offset, offset);
       low = of(k_.load_int(as_int(base), static_cast<int>(offset)));
     } else if (pointer.to == Pointer::To::Words && pointer.dynamic.empty()) {
       low = word_scalar(pointer.words->at(pointer.offset / 4));
@@ -359,6 +360,12 @@ Value Lowering::load_from(const Pointer& pointer) {
       const auto [base, offset] = address(pointer);
       const RecordedInt from = as_int(base);
       Value value;
+      if (path_ && path_->shares_buffers) {
+        uint32_t last = offset;
+        for_each_scalar(pointer.type, offset, pointer.component_stride, pointer.column_stride,
+                        [&](uint32_t byte) { last = std::max(last, byte); });
+        forget(base, offset, last);
+      }
       for_each_scalar(pointer.type, offset, pointer.component_stride, pointer.column_stride,
                       [&](uint32_t byte) { value.push_back(of(k_.load_int(from, static_cast<int>(byte)))); });
       return value;

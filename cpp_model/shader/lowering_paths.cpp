@@ -116,6 +116,17 @@ int word_back(uint32_t scalar) {
   return static_cast<int>(scalar < kPayloadInRay ? word::kColor + scalar : scalar - kPayloadInRay);
 }
 
+/// A shader of the set stores to a buffer.
+bool writes_memory(const WaitingShaders& shaders) {
+  const auto writes = [](const auto& shader) { return writes_memory(shader.module); };
+  return writes(shaders.ray_generation) || std::any_of(shaders.misses.begin(), shaders.misses.end(), writes) ||
+         std::any_of(shaders.closest_hits.begin(), shaders.closest_hits.end(),
+                     [&](const ClosestHitShader& hit) { return writes(hit.shader); }) ||
+         std::any_of(shaders.any_hits.begin(), shaders.any_hits.end(), writes) ||
+         std::any_of(shaders.callables.begin(), shaders.callables.end(),
+                     [](const Module* module) { return module != nullptr && writes_memory(*module); });
+}
+
 }  // namespace
 
 uint32_t path_words(const WaitingShaders& shaders, uint32_t levels) {
@@ -130,7 +141,8 @@ kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& r
   const bool comes_back = kernel != RayKernel::CastEye;
   const WaitingShader& first = shaders.ray_generation;
   Lowering begin(first.module, resources, RayKernel::CastEye, recording);
-  recording.path.emplace(Path{shaders, comes_back, {}, 0, {}, {}, {}, {}, {}, {}});
+  recording.path.emplace(Path{shaders, comes_back, {}, 0, {}, {}, {}, {}, {}, false, {}});
+  recording.path->shares_buffers = resources.units > 1 && writes_memory(shaders);
   const Scalar inside = begin.begin_paths();
   const uint32_t of_begin = first_held_word(shaders);
   const uint32_t of_hits = of_begin + most_held_words(first.module, first.waits);
@@ -162,19 +174,19 @@ kernel::Function lower_waiting(const WaitingShaders& shaders, const Resources& r
 /// The lanes that begin a path.
 Scalar Lowering::begin_paths() {
   Scalar inside;
+  place_saved();
   if (path_->comes_back) {
     inside = Scalar::in_predicate(recorder_.declare_predicate());
     k_.ray_in();
     pixel_ = of(k_.int_word(word::kPixel));
     flags_ = of(k_.int_word(word::kFlags));
-    place_saved(Scalar::constant(0), Scalar::constant(1));
   } else {
     inside = place_pixel();
-    place_saved(Scalar::constant(0), inside);
   }
   const Scalar row = scaled(immediate(Opcode::Shr, *pixel_, 16), static_cast<uint32_t>(resources_.path_pitch()));
   const Scalar place = binary(Opcode::Iadd, row, immediate(Opcode::And, *pixel_, 0xffff));
   path_->record = scaled(place, static_cast<uint32_t>(resources_.path_bytes()));
+  if (path_->comes_back && resources_.units > 1) forget_record();
   path_->sends = recorder_.declare_predicate();
   declare_stored(path_->shaders.ray_generation.module);
   if (!path_->comes_back) return inside;
@@ -341,8 +353,24 @@ void Lowering::put_passed(uint32_t number, const Scalar& scalar) {
     put_record_word(number - kPayloadInRay, scalar);
 }
 
+/// An older thread of the path may have brought these words, from the first byte to the last, into this unit's cache.
+void Lowering::forget(const Scalar& base, uint32_t first, uint32_t last) {
+  for (uint32_t byte = first; byte < last; byte += kLineBytes) k_.invalidate(as_int(base), static_cast<int>(byte), where_);
+  k_.invalidate(as_int(base), static_cast<int>(last), where_);
+}
+
+/// The same of its record, which begins with a line.
+void Lowering::forget_record() {
+  for (uint64_t byte = 0; byte < resources_.path_bytes(); byte += kLineBytes)
+    k_.invalidate(as_int(path_->record), static_cast<int>(resources_.saved + byte), where_);
+}
+
 kernel::Function Lowering::end_paths() {
-  under(Scalar::in_predicate(path_->sends), [&] { k_.ray_out(); });
+  under(Scalar::in_predicate(path_->sends), [&] {
+    if (resources_.units > 1 && resources_.path_words != 0)
+      k_.wait_for_stores(as_int(path_->record), static_cast<int>(resources_.saved), where_);
+    k_.ray_out();
+  });
   for (const auto& [stage, all] : path_->stored) {
     for (const Stored& one : all) {
       under(Scalar::in_predicate(one.lanes), [&] {
@@ -371,8 +399,7 @@ void Lowering::store_later(const Value& place, const Value& colour) {
   if (path_->level && module_.stage() == spv::ExecutionModel::ClosestHitKHR) {
     fail(
         "imageStore is called in a closest-hit shader, and such shaders wait for each other: give the colour back in "
-        "the "
-        "payload, and store in the ray generation shader");
+        "the payload, and store in the ray generation shader");
   }
   std::vector<Stored>& all = stored->second;
   // Each adds to the picture on its own: what is below zero adds nothing.

@@ -78,13 +78,13 @@ kernel::Function Lowering::run() {
     k_.ray_in();
     pixel_ = of(k_.int_word(word::kPixel));
     flags_ = of(k_.int_word(word::kFlags));
-    if (kernel_ != RayKernel::Shade) place_saved(immediate(Opcode::And, *flags_, kDepthMask), Scalar::constant(1));
+    place_saved();
     begin_variables();
     region(entry, kEnd);
     return finished();
   }
   const Scalar inside = place_pixel();
-  place_saved(Scalar::constant(0), inside);
+  place_saved();
   under(inside, [&] {
     begin_variables();
     region(entry, kEnd);
@@ -107,17 +107,14 @@ Scalar Lowering::place_pixel() {
   return both(in_row, in_picture);
 }
 
-/// Where the thread's own memory lies. Miss shaders have none: two rays of a pixel may come to them at once.
-void Lowering::place_saved(const Scalar& depth, const Scalar& inside) {
-  constexpr uint64_t kMost = uint64_t{1} << 30;
-  if (resources_.saved == 0 || resources_.saved_stride() * kSpillSlots > UINT32_MAX - uint64_t{resources_.spilled()} ||
-      resources_.saved_stride() > kMost) {
-    return;
-  }
-  const Scalar row = binary(Opcode::Iadd, scaled(depth, resources_.height), immediate(Opcode::Shr, *pixel_, 16));
-  const Scalar place = binary(Opcode::Iadd, scaled(row, resources_.width), immediate(Opcode::And, *pixel_, 0xffff));
-  const Scalar none = Scalar::constant(static_cast<uint32_t>(resources_.saved_pixels()));
-  saved_ = reg(select(inside, immediate(Opcode::Shl, place, 2), none));
+/// Where the thread's own memory lies.
+void Lowering::place_saved() {
+  const uint64_t end = resources_.spilled() + resources_.saved_stride() * kSpillSlots;
+  if (resources_.saved == 0 || end > UINT32_MAX) return;
+  Scalar thread = of(k_.thread());
+  if (resources_.units > 1)
+    thread = binary(Opcode::Iadd, thread, scaled(of(k_.unit()), resources_.threads));
+  saved_ = reg(immediate(Opcode::Shl, thread, 2));
 }
 
 kernel::Function Lowering::finished() {

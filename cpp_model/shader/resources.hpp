@@ -13,6 +13,9 @@
 
 namespace raypool::shader {
 
+/// A line of the data cache.
+inline constexpr uint32_t kLineBytes = 64;
+
 /// Values of a thread that a kernel may keep in memory.
 inline constexpr int kSpillSlots = 256;
 
@@ -59,27 +62,26 @@ struct Resources {
   std::optional<uint32_t> geometries;
   std::map<uint32_t, uint32_t> specialization;  ///< constant_id -> bits
   uint32_t width = 0, height = 0;               ///< of the picture, pixels
-  uint32_t depth = 1;                           ///< of the deepest rays
-  /// Address of what kernels keep of their threads, behind all else; 0: nothing. Value n of the kernel that a ray of
-  /// depth d has come to (an eye ray's own: 0) lies at saved + saved_stride() n + 4 ((d height + y) width + x): no
-  /// other kernel of the frame uses that place. Threads without a pixel share saved_pixels() behind them, which none
-  /// reads.
+  /// Address of what kernels keep of their threads, behind all else; 0: nothing. Value n of thread t in unit u lies at
+  /// spilled() + saved_stride() n + 4 (threads u + t): a unit runs no other thread t meanwhile.
   uint32_t saved = 0;
-  uint64_t saved_pixels() const { return uint64_t{4} * width * height * (depth + 1); }
+  uint32_t units = 1;    ///< of the machine
+  uint32_t threads = 1;  ///< of a unit: warps x lanes, a power of two
   /// Of sets that wait for their rays: words that a path's record takes. Records lie at saved + path_bytes()
-  /// (y path_pitch() + x); the values above come behind them.
+  /// (y path_pitch() + x); the values above come behind them. With several units a path goes on in any of them, and their
+  /// data caches do not see each other's stores.
   uint32_t path_words = 0;
   /// How many closest-hit shaders of a path may wait for their rays at a time, where they wait for each other: 1 or
   /// more.
   uint32_t levels = 1;
-  uint64_t path_bytes() const { return (uint64_t{4} * path_words + 63) / 64 * 64; }
+  uint64_t path_bytes() const { return (uint64_t{4} * path_words + kLineBytes - 1) / kLineBytes * kLineBytes; }
   /// An odd number of eights, so that rows of a tile lie in different sets of the cache.
   uint64_t path_pitch() const { return 8 * ((uint64_t{width} + 7) / 8 | 1); }
   uint64_t paths_bytes() const { return path_bytes() * path_pitch() * height; }
   /// Where value 0 lies: saved, but for records of paths.
   uint32_t spilled() const { return static_cast<uint32_t>(saved + paths_bytes()); }
-  /// Whole lines, so that a warp's values lie in as few as can be.
-  uint64_t saved_stride() const { return (saved_pixels() + 127) / 64 * 64; }
+  /// Whole lines, so that no two units' values share one.
+  uint64_t saved_stride() const { return (uint64_t{4} * units * threads + kLineBytes - 1) / kLineBytes * kLineBytes; }
 };
 
 }  // namespace raypool::shader

@@ -108,9 +108,10 @@ class Paths {
  public:
   Paths(const PathSet& set, World& world) : set_(set), world_(world), shaders_(set.shaders()) {
     Resources& resources = world.resources;
-    resources.depth = 2;
     resources.levels = 3;
     resources.path_words = path_words(shaders_, resources.levels);
+    resources.threads = test::Interpreter::kLanes;
+    resources.units = 2;
     bytes_ = resources.saved + resources.paths_bytes() + resources.saved_stride() * kSpillSlots;
   }
 
@@ -243,7 +244,7 @@ inline std::string difference(const Steps& expected, Steps got) {
   return "";
 }
 
-/// Machine code of all paths, eight rays a warp, in a random order.
+/// Machine code of all paths, eight rays a warp, in a random order, on any of Resources::units.
 class PathMachine {
  public:
   PathMachine(const Paths& paths, const World& world, const KernelTarget& target) : paths_(paths), world_(world) {
@@ -253,6 +254,7 @@ class PathMachine {
     }
     machine_.memory = paths.memory();
     machine_.arguments = world.arguments;
+    if (world.resources.units > 1) machine_.caches = &caches_;
   }
 
   int spilled = 0;
@@ -290,6 +292,7 @@ class PathMachine {
   void warp(RayKernel kernel, const std::vector<uint32_t>& pixels) {
     for (auto& rays : machine_.rays) rays.clear();
     for (auto& frame : machine_.frame) frame.clear();
+    machine_.unit = ++warps_ * 0x9e3779b9u >> 31;
     machine_.run(programs_[kernel], programs_[kernel].entries.begin()->second);
     for (uint32_t lane = 0; lane < pixels.size(); ++lane) {
       Paths::add(steps_.at(pixels[lane]), machine_.rays.at(lane), machine_.frame.at(lane));
@@ -301,6 +304,8 @@ class PathMachine {
   const World& world_;
   EnumArray<RayKernel, Program, kRayKernels> programs_;
   test::Interpreter machine_;
+  test::UnitCaches caches_{2};
+  uint32_t warps_ = 0;
   std::vector<Intersection> packages_;
   std::map<uint32_t, Steps> steps_;
 };
@@ -322,7 +327,8 @@ inline void compare_machine(const Paths& paths, const World& world, const Expect
   const auto all = machine->run(random);
   for (const auto& [pixel, wanted] : expected) {
     ASSERT_EQ(difference(*wanted, all.at(pixel)), "")
-        << fmt::format("machine code{}, pixel {:08x}", target.triples ? " with triples" : "", pixel);
+        << fmt::format("machine code{}, {}, pixel {:08x}", target.triples ? " with triples" : "",
+                       world.resources.units > 1 ? "two units" : "one unit", pixel);
   }
 }
 
@@ -373,8 +379,12 @@ inline void compare_paths(const PathSet& set, World& world, const std::vector<Ke
   world.arguments[argument::kTileWidthLog2] = 3;
   world.arguments[argument::kTileMask] = 7;
   if (!defined) return;  // a warp of theirs may do anything
-  for (const KernelTarget& target : targets)
-    ASSERT_NO_FATAL_FAILURE(compare_machine(paths, world, expected, target, outcome));
+  for (const KernelTarget& target : targets) {
+    for (const uint32_t units : {1, 2}) {
+      world.resources.units = units;
+      ASSERT_NO_FATAL_FAILURE(compare_machine(paths, world, expected, target, outcome));
+    }
+  }
 }
 
 }  // namespace raypool::shader

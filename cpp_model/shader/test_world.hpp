@@ -28,7 +28,7 @@ inline constexpr uint32_t kWidth = 16, kHeight = 8, kDepth = 6;
 inline constexpr uint32_t kElements = 16;  // of arrays without a size, of textures and of material records
 inline constexpr uint32_t kMemoryBytes = 1 << 16;
 // Behind it what kernels spill.
-inline constexpr uint32_t kWithSpilled = kMemoryBytes + 4 * kWidth * kHeight * (kDepth + 1) * kSpillSlots;
+inline constexpr uint32_t kWithSpilled = kMemoryBytes + kLineBytes * kSpillSlots;
 inline constexpr uint32_t kTexelSide = 4;
 inline constexpr uint32_t kFirstArgument = 24;  // that a uniform word may be: four floats, then four integers
 
@@ -66,7 +66,6 @@ class World {
   explicit World(Random& random) : memory(kWithSpilled), random_(random) {
     resources.width = kWidth;
     resources.height = kHeight;
-    resources.depth = kDepth;
     resources.saved = kMemoryBytes;
     for (uint32_t i = 0; i < 4; ++i) {
       arguments[kFirstArgument + i] = some_float(random);

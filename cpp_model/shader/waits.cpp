@@ -366,6 +366,17 @@ bool must_wait(const Module& module, Liveness& liveness, const std::vector<Trace
 
 }  // namespace
 
+bool writes_memory(const Module& module) {
+  const auto is_store = [&](const Line& line) {
+    if (line.op != spv::Op::OpStore) return false;
+    const spv::StorageClass storage = module.type(module.type_of(line.operands.at(0))).storage;
+    return storage == spv::StorageClass::StorageBuffer || storage == spv::StorageClass::PhysicalStorageBuffer;
+  };
+  return std::any_of(module.blocks().begin(), module.blocks().end(), [&](const Block& block) {
+    return std::any_of(block.lines.begin(), block.lines.end(), is_store);
+  });
+}
+
 bool is_shadow(const Module& module, const Line& trace) {
   return (module.constant(trace.operands.at(1)).value_or(0) & kShadowRay) == kShadowRay;
 }

@@ -59,6 +59,9 @@ bool is_shadow(const Module& module, const Line& trace);
 uint32_t payload_type(const Module& module, const Line& trace);
 inline uint32_t payload_of(const Line& trace) { return trace.operands.at(10); }
 
+/// Whether the shader stores to a buffer.
+bool writes_memory(const Module& module);
+
 /// Labels that a block may branch to.
 std::vector<uint32_t> successors(const Block& block);
 

@@ -21,7 +21,7 @@ void expect_same(const std::vector<std::string>& files, const std::string& name)
   PathOutcome outcome;
   ASSERT_NO_FATAL_FAILURE(compare_paths(set, world, {KernelTarget(false, false), KernelTarget(false, true)}, outcome))
       << name;
-  EXPECT_EQ(outcome.compiled, 2) << name;
+  EXPECT_EQ(outcome.compiled, 4) << name;
   EXPECT_EQ(outcome.undefined, 0) << name;
   EXPECT_GT(outcome.rays, 0) << name;
   std::cout << fmt::format("{}: {} rays, {} of a path at most, {} contributions, {} spilled\n", name, outcome.rays,

@@ -6,6 +6,7 @@
 `default_nettype none
 module rp_compute_unit #(
 `include "rp_unit_parameters.vh"
+  parameter integer UNIT = 0,   // its number among several
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
   input  wire                      clk_i,
@@ -223,8 +224,8 @@ module rp_compute_unit #(
       assign pc[w*16 +: 16] = wide_pc;
       rp_warp #(
         .LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES), .FMA(FMA),
-        .TRIPLES(TRIPLES), .INTERSECTION_WORDS(INTERSECTION_WORDS), .REGISTERS(REGISTERS), .PREDICATES(PREDICATES),
-        .ARGUMENTS(ARGUMENTS), .PC_BITS(PC_BITS), .WITHOUT(WITHOUT)
+        .TRIPLES(TRIPLES), .SHARING(SHARING), .INTERSECTION_WORDS(INTERSECTION_WORDS), .REGISTERS(REGISTERS),
+        .PREDICATES(PREDICATES), .ARGUMENTS(ARGUMENTS), .PC_BITS(PC_BITS), .WITHOUT(WITHOUT)
       ) warp (
         .clk_i(clk_i),
         .rst_ni(rst_ni),
@@ -330,7 +331,7 @@ module rp_compute_unit #(
         wire task_place = KERNEL_OVERLAP != 0 && launch_place[task_warp];
         rp_tid_alu #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(TID_LATENCY), .DEPTH(TID_DEPTH),
-          .ARGUMENTS(ARGUMENTS)
+          .UNIT(UNIT), .SHARING(SHARING), .ARGUMENTS(ARGUMENTS)
         ) tid_alu (
           .block_i(task_place ? block[63:32] : block[31:0]),
           .blocks_i(task_place ? blocks[63:32] : blocks[31:0]),
@@ -344,7 +345,7 @@ module rp_compute_unit #(
       if (TYPE == ISA_TYPE_MEM) begin : gen_mem
         rp_mem_alu #(
 `include "rp_data_cache_parameter_map.vh"
-          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)
+          .SHARING(SHARING), .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)
         ) mem_alu (
           .invalidate_i(argument_write_i),
           .memory_limit_i(memory_limit_i),

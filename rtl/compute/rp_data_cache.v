@@ -6,6 +6,8 @@
 // Use: a lookup in one cycle, with the ready of its kind high; in the next cycle, and only in it, its
 // access with access_i. An access never stalls, so the user must keep a free entry in its request queue for
 // each lookup: push_o is always taken.
+// An inval is an access of a store that writes nothing: it removes its line from the cache. It is refused while a
+// miss-status holding register has the line: its waiters are to be served, and it may have been asked for too early.
 // Promises: hit, refuse or accept answers an access, or none of them: then its line is being fetched, the warp is noted
 // as a waiter, and the line stays in the cache until all its waiters are served.
 // Must be given: the beats of a line in order; invalidate_i only while no access is
@@ -13,6 +15,7 @@
 `default_nettype none
 module rp_data_cache #(
 `include "rp_data_cache_parameters.vh"
+  parameter integer SHARING = 0,   // there are accesses with access_inval_i
   parameter integer WARPS = 8,
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1,
   parameter integer MSHR_BITS = (DATA_CACHE_MSHRS > 1) ? $clog2(DATA_CACHE_MSHRS) : 1
@@ -29,6 +32,7 @@ module rp_data_cache #(
   // access, one cycle after its lookup
   input  wire                   access_i,
   input  wire                   access_store_i,
+  input  wire                   access_inval_i,        // with access_store_i
   input  wire                   access_may_allocate_i, // a miss may take a miss-status holding register
   input  wire [WARP_BITS-1:0]   access_warp_i,
   input  wire [127:0]           access_data_i,
@@ -36,7 +40,7 @@ module rp_data_cache #(
   output wire                   hit_o,                 // load: data_o is its quadword
   output wire [127:0]           data_o,
   output wire                   allocate_o,            // load: its line is being fetched from now on
-  output wire                   refuse_o,              // load: needs a fetch, and none may begin now
+  output wire                   refuse_o,              // load: needs a fetch, and none may begin now; inval: later
   output wire                   accept_o,              // store: done
   // request of this access, to the queue
   output wire                   push_o,
@@ -121,9 +125,12 @@ module rp_data_cache #(
   assign hit_o = access_i && !access_store_i && found;
   assign allocate_o = access_i && !access_store_i && !found && !match && access_may_allocate_i && available &&
                       locked != 2'b11;
-  assign refuse_o = access_i && !access_store_i && !found && !match && !allocate_o;
-  assign accept_o = access_i && access_store_i && !match;
-  assign push_o = accept_o || allocate_o;
+  wire inval = SHARING != 0 && access_i && access_inval_i;
+  wire held = match || (hit_0 && locked[0]) || (hit_1 && locked[1]);
+  wire removes = inval && !held;
+  assign refuse_o = (access_i && !access_store_i && !found && !match && !allocate_o) || (inval && held);
+  assign accept_o = access_i && access_store_i && (inval ? !held : !match);
+  assign push_o = (accept_o && !inval) || allocate_o;
   assign push_write_o = access_store_i;
   assign push_quad_o = access_store_i ? quad_q : {quad_q[27:2], 2'b00};
 
@@ -131,7 +138,7 @@ module rp_data_cache #(
   // from then its register does not match.
   always @(posedge clk_i) begin
     if (!rst_ni) older_q <= {SETS{1'b0}};
-    else if (access_i && found) older_q[access_set] <= hit_0;
+    else if (access_i && found) older_q[access_set] <= removes ? hit_1 : hit_0;
   end
 
   always @(posedge clk_i) begin
@@ -141,6 +148,9 @@ module rp_data_cache #(
     end else if (refill_first || refill_last) begin
       if (refill_way) valid_1_q[refill_set] <= refill_last;
       else valid_0_q[refill_set] <= refill_last;
+    end else if (removes) begin
+      if (hit_0) valid_0_q[access_set] <= 1'b0;
+      if (hit_1) valid_1_q[access_set] <= 1'b0;
     end
   end
 
@@ -155,7 +165,7 @@ module rp_data_cache #(
         .available_o(available),
         .available_id_o(push_id_o),
         .locked_o(locked),
-        .join_i(access_i && match),
+        .join_i(access_i && match && !inval),
         .allocate_i(allocate_o),
         .allocate_way_i(victim),
         .fill_i(refill_q),
@@ -195,7 +205,7 @@ module rp_data_cache #(
   );
 
   wire read_data = lookup_i && !lookup_store_i;
-  wire write_store = access_i && access_store_i;
+  wire write_store = access_i && access_store_i && !inval;
   wire [SET_BITS+1:0] data_address = refill_q ? {refill_set, refill_beat_q} : write_store ? quad_q[SET_BITS+1:0] :
                                      lookup_quad_i[SET_BITS+1:0];
   wire [127:0] data_in = refill_q ? refill_data_q : access_data_i;

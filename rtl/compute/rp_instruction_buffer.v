@@ -6,6 +6,7 @@
 module rp_instruction_buffer #(
   parameter [0:0] FMA = 1'b0,          // ffma is legal
   parameter [0:0] TRIPLES = 1'b0,      // triples are legal
+  parameter [0:0] SHARING = 1'b0,      // unit and inval are legal
   parameter integer INTERSECTION_WORDS = 21,  // among so many words
   parameter integer REGISTERS = 16,           // instructions name no others, predicates, arguments
   parameter integer PREDICATES = 16,
@@ -104,7 +105,7 @@ module rp_instruction_buffer #(
         F_CACHE:
           if (cache_hit_i) begin
             next_q <= cache_instruction_i;
-            next_legal_q <= isa_legal(cache_instruction_i, FMA, TRIPLES, INTERSECTION_WORDS[4:0],
+            next_legal_q <= isa_legal(cache_instruction_i, FMA, TRIPLES, SHARING, INTERSECTION_WORDS[4:0],
                                       WITHOUT[cache_instruction_i[63:55]]) &&
                             isa_numbers_fit(cache_instruction_i, REGISTERS[4:0], PREDICATES[4:0], ARGUMENTS[5:0]);
             next_control_q <= isa_control(cache_instruction_i);

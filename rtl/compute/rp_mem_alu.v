@@ -10,6 +10,7 @@
 `default_nettype none
 module rp_mem_alu #(
 `include "rp_data_cache_parameters.vh"
+  parameter integer SHARING = 0,   // has the instruction inval
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
@@ -58,7 +59,9 @@ module rp_mem_alu #(
 
   // ---- Arrival: addresses. Word addresses are enough from here on, with one bit that flags a byte address that was
   // none.
-  wire arrive_store = task_operation_i == ISA_MEM_ST;
+  // An inval goes the way of a store, and writes nothing.
+  wire arrive_inval = SHARING != 0 && task_operation_i == ISA_MEM_INVAL;
+  wire arrive_store = task_operation_i == ISA_MEM_ST || arrive_inval;
   reg [LANES*30-1:0] arrive_words;
   reg                arrive_misaligned;
   reg [31:0]         sum;
@@ -82,7 +85,7 @@ module rp_mem_alu #(
   wire [WARP_BITS-1:0]    select_warp;
   wire [TASK_BITS-1:0]    task_word;
   wire [PARTIAL_BITS-1:0] partial_word;
-  wire                    kept_misaligned, kept_store;
+  wire                    kept_misaligned, kept_store, kept_inval;
   wire [LANES-1:0]        kept_mask, kept_left, kept_refused;
   wire [LANES*32-1:0]     kept_data, kept_result;
   wire [LANES*30-1:0]     kept_words;
@@ -104,6 +107,21 @@ module rp_mem_alu #(
     .write_address_i(task_warp_i),
     .write_data_i({arrive_misaligned, arrive_store, task_mask_i, task_operand_b_i, arrive_words})
   );
+  generate
+    if (SHARING != 0) begin : gen_inval
+      rp_ram_1r1w #(.WIDTH(1), .DEPTH(WARPS)) u_inval (
+        .clk_i(clk_i),
+        .read_i(select),
+        .read_address_i(select_warp),
+        .read_data_o(kept_inval),
+        .write_i(task_valid_i),
+        .write_address_i(task_warp_i),
+        .write_data_i(arrive_inval)
+      );
+    end else begin : gen_no_inval
+      assign kept_inval = 1'b0;
+    end
+  endgenerate
   rp_ram_1r1w #(.WIDTH(PARTIAL_BITS), .DEPTH(WARPS)) u_partial (
     .clk_i(clk_i),
     .read_i(select),
@@ -122,6 +140,7 @@ module rp_mem_alu #(
   reg [1:0]           pass_kind_q;
   reg [MSHR_BITS-1:0] pass_mshr_q;
   reg                 pass_store_q;
+  reg                 pass_inval_q;
   reg                 pass_misaligned_q;
   reg [LANES-1:0]     pass_pending_q;
   reg [LANES-1:0]     pass_leader_q;      // the lowest pending lane
@@ -211,6 +230,7 @@ module rp_mem_alu #(
       pass_kind_q <= next_kind;
       pass_mshr_q <= next_mshr;
       pass_store_q <= kept_store;
+      pass_inval_q <= kept_inval;
       pass_misaligned_q <= kept_misaligned;
       pass_pending_q <= next_pending;
       pass_leader_q <= lowest(next_pending);
@@ -223,6 +243,7 @@ module rp_mem_alu #(
       pass_warp_q <= task_warp_i;
       pass_kind_q <= KIND_NEW;
       pass_store_q <= arrive_store;
+      pass_inval_q <= arrive_inval;
       pass_misaligned_q <= arrive_misaligned;
       pass_pending_q <= task_mask_i;
       pass_leader_q <= lowest(task_mask_i);
@@ -261,6 +282,7 @@ module rp_mem_alu #(
   reg [1:0]           access_kind_q;
   reg [MSHR_BITS-1:0] access_mshr_q;
   reg                 access_store_q;
+  reg                 access_inval_q;
   reg [LANES-1:0]     access_served_q;
   reg [LANES-1:0]     access_left_q;
   reg [LANES-1:0]     access_refused_q;
@@ -299,6 +321,7 @@ module rp_mem_alu #(
       access_kind_q <= pass_kind_q;
       access_mshr_q <= pass_mshr_q;
       access_store_q <= pass_store_q;
+      access_inval_q <= pass_inval_q;
       access_served_q <= served;
       access_left_q <= pass_left_q;
       access_refused_q <= pass_refused_q;
@@ -322,7 +345,7 @@ module rp_mem_alu #(
 
   rp_data_cache #(
 `include "rp_data_cache_parameter_map.vh"
-    .WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHR_BITS(MSHR_BITS)
+    .SHARING(SHARING), .WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHR_BITS(MSHR_BITS)
   ) u_cache (
     .clk_i(clk_i),
     .rst_ni(rst_ni),
@@ -334,6 +357,7 @@ module rp_mem_alu #(
     .lookup_quad_i(quad),
     .access_i(access),
     .access_store_i(access_store_q),
+    .access_inval_i(access_inval_q),
     .access_may_allocate_i(!privilege || privilege_warp == access_warp_q),
     .access_warp_i(access_warp_q),
     .access_data_i(access_data_q),
@@ -402,8 +426,8 @@ module rp_mem_alu #(
   assign done_data_o = result_q;
   assign hit_o = hit_q;
   assign miss_o = miss_q;
-  assign store_o = accepts;
-  assign store_trace_valid_o = accepts;
+  assign store_o = accepts && !access_inval_q;
+  assign store_trace_valid_o = store_o;
   assign store_trace_warp_o = access_warp_q;
   assign store_trace_address_o = {push_quad, 4'b0000};
   assign store_trace_data_o = access_data_q;

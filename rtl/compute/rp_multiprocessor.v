@@ -122,7 +122,7 @@ module rp_multiprocessor #(
     for (u = 0; u < UNITS; u = u + 1) begin : gen_unit
       rp_compute_unit #(
 `include "rp_unit_parameter_map.vh"
-        .WARP_BITS(WARP_BITS)
+        .UNIT(SHARING != 0 ? u : 0), .WARP_BITS(WARP_BITS)
       ) compute_unit (
         .clk_i(clk_i),
         .rst_ni(rst_ni),

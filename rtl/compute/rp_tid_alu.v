@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Thread, warp and block indices, dimensions, kernel arguments.
+// Thread, warp, block and unit indices, dimensions, kernel arguments.
 `default_nettype none
 module rp_tid_alu #(
   parameter integer WARPS = 8,
@@ -8,6 +8,8 @@ module rp_tid_alu #(
   parameter integer WARP_BITS = 3,
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 1,
+  parameter integer UNIT = 0,               // number of the compute unit
+  parameter integer SHARING = 0,            // has the instruction unit
   parameter integer ARGUMENTS = 32          // writes of others are ignored, reads never come
 ) (
   // the launch that runs, and the host's argument words
@@ -60,7 +62,8 @@ module rp_tid_alu #(
           ISA_TID_WARP: index_q[l*32 +: 32] <= {{32-WARP_BITS{1'b0}}, task_warp_i};
           ISA_TID_BLOCK: index_q[l*32 +: 32] <= block_i;
           ISA_TID_THREADS: index_q[l*32 +: 32] <= {21'd0, threads_i};
-          default: index_q[l*32 +: 32] <= blocks_i;
+          default:
+            index_q[l*32 +: 32] <= (SHARING != 0 && task_operation_i == ISA_TID_UNIT) ? UNIT : blocks_i;
         endcase
     end
 

@@ -9,6 +9,7 @@ module rp_warp #(
   parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210,
   parameter integer FMA = 0,        // reads register rc too, and issues ffma
   parameter integer TRIPLES = 0,    // issues triples
+  parameter integer SHARING = 0,
   parameter integer INTERSECTION_WORDS = 21,
   parameter integer REGISTERS = 16,
   parameter integer PREDICATES = 16,
@@ -139,7 +140,8 @@ module rp_warp #(
   );
 
   rp_instruction_buffer #(
-    .FMA(FMA != 0), .TRIPLES(TRIPLES != 0), .INTERSECTION_WORDS(INTERSECTION_WORDS), .REGISTERS(REGISTERS),
+    .FMA(FMA != 0), .TRIPLES(TRIPLES != 0), .SHARING(SHARING != 0),
+    .INTERSECTION_WORDS(INTERSECTION_WORDS), .REGISTERS(REGISTERS),
     .PREDICATES(PREDICATES), .ARGUMENTS(ARGUMENTS), .PC_BITS(PC_BITS), .WITHOUT(WITHOUT)
   ) instruction_buffer (
     .clk_i(clk_i),

@@ -92,6 +92,8 @@
   localparam [4:0] ISA_MEM_LD3 = 5'd16;
   localparam [4:0] ISA_RAY_RLD3 = 5'd19;
   localparam [4:0] ISA_RAY_RST3 = 5'd20;
+  localparam [4:0] ISA_TID_UNIT = 5'd7;
+  localparam [4:0] ISA_MEM_INVAL = 5'd2;
 
   // whether an ALU type looks at an operand: bit n is that of type n
   localparam [15:0] ISA_HAS_OPERAND_A = 16'b0000000000111110;

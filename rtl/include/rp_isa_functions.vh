@@ -101,6 +101,23 @@
     end
   endfunction
 
+  // machines with sharing have this instruction
+  function isa_legal_sharing_op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // tid: unit
+        9'd7
+        // mem: inval
+        , 9'd66
+          : isa_legal_sharing_op = 1'b1;
+        default: isa_legal_sharing_op = 1'b0;
+      endcase
+    end
+  endfunction
+
   // the instruction accesses three words of a ray package
   function isa_triple_of_words;
     /* verilator lint_off UNUSEDSIGNAL */
@@ -127,8 +144,8 @@
         //   fgt fge
         9'd32, 9'd33, 9'd34, 9'd35, 9'd36, 9'd37, 9'd38, 9'd39, 9'd40, 9'd41, 9'd42, 9'd43, 9'd44, 9'd45,
         9'd46, 9'd47
-        // mem: ld st ld3
-        , 9'd64, 9'd65, 9'd80
+        // mem: ld st ld3 inval
+        , 9'd64, 9'd65, 9'd80, 9'd66
         // int: iadd isub imul and or xor shl shr sar imin imax umin umax sel
         , 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109, 9'd110
         // flt: fadd fsub fmul fmin fmax f2i i2f ffma fadd3 fsub3 fmul3 fmul3s ffma3 ffma3s
@@ -282,11 +299,13 @@
     input [63:0] encoding;
     input fma;
     input triples;
+    input sharing;
     input [4:0] package_words;
     input lacking;
     begin
       isa_legal = isa_legal_op(encoding) || (!lacking && isa_optional_op(encoding)) ||
                   (fma && isa_legal_fma_op(encoding)) ||
+                  (sharing && isa_legal_sharing_op(encoding)) ||
                   (triples && isa_legal_triple_op(encoding) &&
                    !(isa_triple_of_words(encoding) && encoding[36:32] > package_words - 5'd3)) ||
                   (fma && triples && isa_legal_fused_triple_op(encoding));
@@ -337,8 +356,8 @@
     /* verilator lint_on UNUSEDSIGNAL */
     begin
       case ({encoding[63:60], encoding[59:55]})
-        // tid: tid lane warp block threads blocks arg arg3
-        9'd0, 9'd1, 9'd2, 9'd3, 9'd4, 9'd5, 9'd6, 9'd22
+        // tid: tid lane warp block threads blocks arg arg3 unit
+        9'd0, 9'd1, 9'd2, 9'd3, 9'd4, 9'd5, 9'd6, 9'd22, 9'd7
         // mem: ld ld3
         , 9'd64, 9'd80
         // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax

@@ -26,6 +26,9 @@
         (SLOW_LANES & (SLOW_LANES - 1)) != 0) begin : gen_bad_SLOW_LANES
       SLOW_LANES_must_be_a_power_of_two_from_1_to_32 illegal ();
     end
+    if (SHARING < 0 || SHARING > 1) begin : gen_bad_SHARING
+      SHARING_must_be_an_integer_from_0_to_1 illegal ();
+    end
     if (INTERSECTION_WORDS < 12 || INTERSECTION_WORDS > 21) begin : gen_bad_INTERSECTION_WORDS
       INTERSECTION_WORDS_must_be_an_integer_from_12_to_21 illegal ();
     end

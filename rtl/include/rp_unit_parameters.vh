@@ -8,6 +8,7 @@
   parameter integer KERNEL_OVERLAP = 0,
   parameter integer WIDE_RAY_MEMORY = 0,
   parameter integer SLOW_LANES = 32,
+  parameter integer SHARING = 0,
   parameter integer INTERSECTION_WORDS = 21,
   parameter integer REGISTERS = 16,
   parameter integer PREDICATES = 16,

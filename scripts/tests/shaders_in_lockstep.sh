@@ -19,10 +19,32 @@ on_unit() {
   library=()
 }
 
-# on_chip TRAVERSER [returns]: draws on a chip that has of everything one, and with a second word on one whose rays come
-# back if they meet nothing, too. Tests of tb/rtl Verilate the first ones too.
+# verilate unit|chip NAME SETTINGS UNITS: of a machine, which then draws.
+verilate() {
+  local kind=$1 name=$2 of_chip=() top=multiprocessor parameters
+  # In a file, since sim refuses settings of what a chip does not have.
+  "$raypool" config 1w1c --set "$3" --json > "$folder/$name.json"
+  machine=(--config "$folder/$name.json" --units "$4")
+  [ "$kind" = unit ] || { of_chip=(--chip --units "$4"); top=chip; }
+  parameters=$("$raypool" config "$folder/$name.json" --verilog-parameters "${of_chip[@]}")
+  [ "$kind" = chip ] || parameters+=" UNITS=$4"
+  mkdir -p "$libraries/$name"
+  # shellcheck disable=SC2086
+  flock "$libraries/$name/.lock" scripts/verilate.sh "$libraries/$name" --top $top --quick $parameters \
+    > "$folder/verilate.log" || { cat "$folder/verilate.log"; exit 1; }
+  library=(--unit-library "$libraries/$name/libraypool_$kind.so")
+}
+
+# on_units UNITS: draws on so many, whose caches are large enough that what they hold grows old.
+on_units() {
+  verilate unit "units_2w2c_$1" "warps=2 lanes=2 sharing=true chip.miss_records=true \
+    chip.traverser=static" "$1"
+}
+
+# on_chip TRAVERSER [returns|units]: draws on a chip that has of everything one; or one whose rays come back if they
+# meet nothing, too; or on such a chip with two units. Tests of tb/rtl Verilate the first ones too.
 on_chip() {
-  local name settings="chip.traverser=$1 instruction_cache.bytes=512 data_cache.bytes=512 data_cache.mshrs=1"
+  local name units=1 settings="chip.traverser=$1 instruction_cache.bytes=512 data_cache.bytes=512 data_cache.mshrs=1"
   settings+=" chip.held_limit=1 chip.ray_pool.size=1 chip.intersection_pool.size=1 chip.memory.queue=1"
   settings+=" chip.hardware_traverser.node_cache_mshrs=1 chip.hardware_traverser.triangle_cache_mshrs=1"
   if [ "$1" = static ]; then
@@ -38,18 +60,14 @@ on_chip() {
     settings+=" chip.hardware_traverser.node_cache_ways=2 chip.hardware_traverser.triangle_cache_ways=2"
   fi
   if [ $# -gt 1 ]; then
-    name+=_returns
+    name+=_$2
     settings+=" chip.miss_records=true"
   fi
-  # In a file, since sim refuses settings of what a chip does not have.
-  "$raypool" config 1w1c --set "$settings" --json > "$folder/$name.json"
-  machine=(--config "$folder/$name.json")
-  parameters=$("$raypool" config "$folder/$name.json" --verilog-parameters --chip)
-  mkdir -p "$libraries/$name"
-  # shellcheck disable=SC2086
-  flock "$libraries/$name/.lock" scripts/verilate.sh "$libraries/$name" --top chip --quick $parameters \
-    > "$folder/verilate.log" || { cat "$folder/verilate.log"; exit 1; }
-  library=(--unit-library "$libraries/$name/libraypool_chip.so")
+  if [ "${2:-}" = units ]; then
+    units=2
+    settings=${settings/data_cache.bytes=512/data_cache.bytes=8192 sharing=true}
+  fi
+  verilate chip "$name" "$settings" "$units"
 }
 
 # draw SCENE SET SIZE DEPTH SAMPLES
@@ -97,6 +115,11 @@ draw_large() {
 wait_small() {
   draw cornell shadow_inside 6x4 1 1
 }
+# Those that keep a record of their paths, which go on in any unit.
+wait_units() {
+  draw cornell reflections 16x12 1 1
+  draw $features nested 8x6 4 1
+}
 wait_large() {
   draw cornell triangle 16x12 1 1
   draw $features reflections 12x8 1 1
@@ -111,6 +134,9 @@ if [ "$boundary" = unit ]; then
   on_unit
   "draw_$size"
   "wait_$size"
+  on_units 2
+  draw cornell bounces 4x3 1 1
+  [ "$size" = small ] || { on_units 4; wait_units; }
 elif [ "$size" = small ]; then
   on_chip static
   draw_small
@@ -123,4 +149,6 @@ else
   draw_small
   on_chip hardware returns
   wait_large
+  on_chip hardware units
+  wait_units
 fi

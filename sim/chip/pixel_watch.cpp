@@ -86,6 +86,7 @@ bool PixelWatch::Kernel::exports(uint32_t pixel, uint8_t what) {
 // Of two kernels that run and could have made it the older one is held to have: together they can make no more.
 void PixelWatch::exported(uint32_t number, Export kind, uint32_t pixel) {
   const auto made = [&](Kernel& kernel) {
+    if (frame_.shaders) return kind == Export::Contribution || kernel.has(pixel);
     const bool eye = kernel.kind == RayKernel::CastEye, shade = kernel.kind == RayKernel::Shade;
     if (eye != (kind == Export::EyeRay) || shade != (kind == Export::Contribution)) return false;
     return kernel.exports(pixel, shade ? kContribution : kind == Export::ShadowRay ? kShadowRay : kNormalRay);

@@ -6,6 +6,7 @@
 // the ray pool, an intersection until a thread has imported it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -26,6 +27,7 @@ class PixelWatch {
     uint32_t places = 512;        ///< of the ray pool
     bool kernel_overlap = false;  ///< two kernels of a unit may run
     RecordLayout layout;          ///< of intersections
+    bool shaders = false;         ///< threads export as many packages as they like, and contribute to any pixel
   };
 
   /// `begin`: what the chip shows in the frame's first cycle.
@@ -56,6 +58,7 @@ class PixelWatch {
     }
     /// One of the pixel's threads could still export this, and has now.
     bool exports(uint32_t pixel, uint8_t what);
+    bool has(uint32_t pixel) const { return std::find(pixels.begin(), pixels.end(), pixel) != pixels.end(); }
 
     RayKernel kind = RayKernel::CastEye;
     uint8_t may_export = 0;  // a thread; bits as above

@@ -11,7 +11,8 @@ namespace {
 /// A chip with ports that show what a test sets, one event a cycle.
 class Ports {
  public:
-  explicit Ports(uint32_t units = 1, bool overlap = false) : watch(frame(units, overlap), ChipOutputs{}) {}
+  explicit Ports(uint32_t units = 1, bool overlap = false, bool shaders = false)
+      : watch(frame(units, overlap, shaders), ChipOutputs{}) {}
 
   PixelWatch watch;
 
@@ -76,12 +77,13 @@ class Ports {
   }
 
  private:
-  static PixelWatch::Frame frame(uint32_t units, bool overlap) {
+  static PixelWatch::Frame frame(uint32_t units, bool overlap, bool shaders) {
     PixelWatch::Frame frame;
     frame.width = frame.height = 8;
     frame.units = units;
     frame.places = 4;
     frame.kernel_overlap = overlap;
+    frame.shaders = shaders;
     return frame;
   }
   void cycle(const std::function<void(ChipOutputs&, TraverserPorts&)>& show) {
@@ -205,6 +207,27 @@ TEST(PixelWatch, WithOverlapAPixelInBothKernelsIsHeldUntilBothThreadsAreSeen) {
   EXPECT_EQ(chip.watch.held(), 1u) << "its kernel runs";
   EXPECT_THROW(chip.contribution(0, 1), std::runtime_error);
   chip.kernel_ends(0, 7);
+  EXPECT_EQ(chip.watch.held(), 0u);
+}
+
+TEST(PixelWatch, ShadersExportWhatTheyLikeFromThePixelsOfTheirThreads) {
+  Ports chip(1, false, true);
+  chip.watch.eye_launched(0, {1, 2});
+  chip.ray(0, 1, 1);
+  chip.contribution(0, 1);
+  chip.contribution(0, 7);
+  EXPECT_THROW(chip.ray(0, 3, 1, false), std::runtime_error) << "pixel of no thread";
+  chip.kernel_ends(0, 3);
+  EXPECT_EQ(chip.watch.held(), 1u);
+  // The ray comes back, and its thread sends another one, which comes back too.
+  for (int bounce = 0; bounce < 2; ++bounce) {
+    chip.meets(1);
+    chip.watch.launched(0, RayKernel::CastSecondary, 1);
+    chip.import(0, 1);
+    if (bounce == 0) chip.ray(0, 1, 1);
+    chip.contribution(0, 1);
+    chip.kernel_ends(0, static_cast<uint16_t>(5 + bounce));
+  }
   EXPECT_EQ(chip.watch.held(), 0u);
 }
 

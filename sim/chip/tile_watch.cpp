@@ -16,7 +16,7 @@ TileWatch::TileWatch(const ChipOptions& options, uint32_t units, const ChipOutpu
       columns_((options.width + walk_.tile_width() - 1) / walk_.tile_width()),
       counts_(std::move(counts)),
       pixels_({options.width, options.height, units, static_cast<uint32_t>(options.configuration.chip.ray_pool_size),
-               options.configuration.kernel_overlap, options.layout},
+               options.configuration.kernel_overlap, options.layout, options.shaders},
               begin),
       tile_of_(place(options.width - 1, options.height - 1) + 1) {}
 

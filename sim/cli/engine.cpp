@@ -138,7 +138,8 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
         "engines native, estimate and sampled are for frames only: use functional, model, rtl or lockstep");
   if (options.engine == Engine::Functional) {
     std::vector<std::unique_ptr<ComputeUnit>> units;
-    for (int i = 0; i < options.units; ++i) units.push_back(make_functional_unit(configuration, memory));
+    for (uint32_t i = 0; i < static_cast<uint32_t>(options.units); ++i)
+      units.push_back(make_functional_unit(configuration, memory, i));
     return make_multiprocessor(std::move(units), static_cast<int>(configuration.intersection_beats()));
   }
   if (options.engine == Engine::Model)

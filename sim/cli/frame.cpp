@@ -82,6 +82,7 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
   chip.layout = record_layout(ray_program(record), record.configuration);
+  chip.shaders = record.kernels != nullptr;
   chip.arguments = arguments_of(record, scene);
   chip.width = record.width;
   chip.height = record.height;

@@ -215,12 +215,22 @@ TEST_F(ShaderEngines, AnyHitShadersCulledSidesAndTheTableOfShadersDoWhatTheyShou
   }
 }
 
-TEST_F(ShaderEngines, RefuseSeveralUnitsWherePathsKeepSomethingInMemory) {
-  SimOptions several = options("cpp_model/shader/cases/triangle", "cornell");
-  several.units = 2;
-  agree(several);
-  several.shaders = "cpp_model/shader/cases/reflections";
-  EXPECT_NE(refusal(several).find("draw with --units 1"), std::string::npos) << refusal(several);
+TEST_F(ShaderEngines, DrawTheSamePictureWherePathsGoOnInAnotherUnit) {
+  for (const std::string& set : kWaiting) {
+    for (const int units : {2, 4}) {
+      SimOptions several = options("cpp_model/shader/cases/" + set, "cornell",
+                                   {fmt::format("chip.traverser={}", units == 2 ? "static" : "hardware")});
+      several.units = units;
+      several.depth = 1;
+      EXPECT_GT(equal_pictures(several, {"native", "functional", "model"}), set == "table" ? 0 : kOfOneColour);
+      EXPECT_EQ(report()["configuration"]["sharing"], true);
+    }
+  }
+  SimOptions without = options("cpp_model/shader/cases/reflections", "cornell", {"sharing=false"});
+  agree(without);
+  without.units = 2;
+  EXPECT_NE(refusal(without).find("draw with --set sharing=true, or --units 1"), std::string::npos)
+      << refusal(without);
 }
 
 TEST_F(ShaderEngines, DrawTheSamePictureInPathsOfManySamples) {
@@ -283,7 +293,6 @@ class RandomShaderEngines : public ShaderEngines {
     shader::Resources resources;
     resources.width = frame.width;
     resources.height = frame.height;
-    resources.depth = frame.depth;
     std::vector<shader::Word>& block = resources.blocks[{0, 2}];
     for (const uint32_t bits : shaders.block) block.push_back({bits, std::nullopt});
     constexpr uint32_t kCameraNumbers = 12;  // eye, corner, step_x, step_y

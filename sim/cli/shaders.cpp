@@ -31,14 +31,6 @@ std::vector<fs::path> files_in(const std::string& folder) {
   return files;
 }
 
-void check_units_that_wait(const shader::Resources& resources, const RunRecord& record) {
-  if (resources.path_words == 0 || record.units == 1) return;
-  throw InputError(
-      fmt::format("the shaders wait for rays, and {} words that a path keeps meanwhile may lie in the cache of another "
-                  "unit, as caches of {} units do not see each other's stores: draw with --units 1",
-                  resources.path_words, record.units));
-}
-
 /// Room for what kernels keep of their threads, and for records of paths.
 void grow_for_paths(MemoryImage& image, const shader::ShaderSet& set, const shader::Resources& resources,
                     const RunRecord& record) {
@@ -67,11 +59,15 @@ void check_shaders(const SimOptions& options, Engine engine) {
   }
   if (!options.shader_source.load || !options.shader_source.memory)
     throw InputError("this program draws with the built-in kernels alone: leave --shaders out");
-  if (engine == Engine::Estimate || engine == Engine::Sampled) {
+  if (engine == Engine::Estimate) {
     throw InputError(
-        fmt::format("engine {} knows the built-in kernels alone: draw shaders with native, functional, model, rtl or "
-                    "lockstep",
-                    options.engine));
+        "engine estimate knows the built-in kernels alone: draw shaders with native, functional, sampled, model, rtl "
+        "or lockstep");
+  }
+  if (engine == Engine::Sampled && options.samples > 1) {
+    throw InputError(
+        "engine sampled draws one frame, and samples of a pixel are frames that take about as long: leave --samples "
+        "out");
   }
   if (options.precision == "double")
     throw InputError("--precision double draws with the built-in kernels alone: leave it or --shaders out");
@@ -98,6 +94,12 @@ void check_shaders(const RunRecord& record) {
         "the shaders wait for rays, which must come back even if they meet nothing: draw with --set "
         "chip.miss_records=true");
   }
+  if (record.units > 1 && !record.configuration.sharing) {
+    throw InputError(
+        fmt::format("shaders keep values in a memory that {} units share, for which these need the instructions unit "
+                    "and inval: draw with --set sharing=true, or --units 1",
+                    record.units));
+  }
   if (record.reflections && !chip.reflections) {
     throw InputError(fmt::format(
         "depth {} traces rays from closest-hit shaders, but {} has no kernel for them (chip.reflections): draw with "
@@ -120,11 +122,11 @@ MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSe
   frame.offset = static_cast<float>(
       offset_share(longest_direction(frame.camera, frame.width, frame.height), record.configuration.significand));
   shader::Resources resources = options.shader_source.memory(image, scene, set, frame);
+  resources.units = record.units;
+  resources.threads = record.configuration.contents();
   if (record.waits) {
     resources.levels = static_cast<uint32_t>(record.depth);
     resources.path_words = set.path_words(resources.specialization, resources.levels);
-    resources.depth = 0;  // a path has but one kernel at a time
-    check_units_that_wait(resources, record);
   }
   const KernelTarget target(record.configuration);
   record.kernels = std::make_shared<const RayProgram>(make_ray_program(set.record(resources, target), target));

@@ -264,11 +264,11 @@ TEST_F(ShadersTest, WhatDoesNotGoWithShadersIsRefused) {
   };
   const auto set = [](const char* setting) { return [=](SimOptions& chosen) { chosen.set = {setting}; }; };
   EXPECT_EQ(refused("estimate", [](SimOptions&) {}),
-            "engine estimate knows the built-in kernels alone: draw shaders with native, functional, model, rtl or "
-            "lockstep");
-  EXPECT_EQ(refused("sampled", [](SimOptions&) {}),
-            "engine sampled knows the built-in kernels alone: draw shaders with native, functional, model, rtl or "
-            "lockstep");
+            "engine estimate knows the built-in kernels alone: draw shaders with native, functional, sampled, model, "
+            "rtl or lockstep");
+  EXPECT_EQ(refused("sampled", [](SimOptions& chosen) { chosen.samples = 2; }),
+            "engine sampled draws one frame, and samples of a pixel are frames that take about as long: leave "
+            "--samples out");
   EXPECT_EQ(refused("native", [](SimOptions& chosen) { chosen.precision = "double"; }),
             "--precision double draws with the built-in kernels alone: leave it or --shaders out");
   EXPECT_EQ(refused("native", [](SimOptions& chosen) { chosen.unstable = 2; }),

@@ -60,6 +60,7 @@ const std::vector<MachineFeature>& machine_features() {
       {"wide ray memory",
        [](const Machine& m) { return m.configuration.wide_ray_memory && m.configuration.lanes > 4; }},
       {"slow lanes", [](const Machine& m) { return m.configuration.slow_groups() > 1; }},
+      {"sharing", [](const Machine& m) { return m.configuration.sharing; }},
       {"short intersections", fewer<&Configuration::intersection_words>},
       {"fused multiply-add", [](const Machine& m) { return m.configuration.fma; }},
       {"whole significands", [](const Machine& m) { return m.configuration.significand == kDefault.significand; }},

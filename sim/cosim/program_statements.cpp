@@ -115,6 +115,7 @@ size_t ProgramStatements::plain_type() {
 
 const InstructionInfo& ProgramStatements::plain_row(std::optional<size_t> type) {
   const size_t of = type ? *type : plain_type();
+  if (of == to_underlying(AluType::Tid) && has(Opcode::Unit) && chance(8)) return instruction(Opcode::Unit);
   for (;;) {
     const InstructionInfo& info = kInstructions[below(kSingles)];
     if (info.alu() == static_cast<AluType>(of) && info.kind != Kind::Control && configuration_.has(info)) return info;
@@ -312,13 +313,14 @@ void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries, boo
 void ProgramStatements::access(bool store, uint32_t offset, bool of_four) {
   Instruction i;
   const bool three = of_four && !store && chance(2);
-  i.info = &instruction(store ? Opcode::St : three ? Opcode::Ld3 : Opcode::Ld);
+  const bool inval = has(Opcode::Inval) && chance(4);
+  i.info = &instruction(inval ? Opcode::Inval : store ? Opcode::St : three ? Opcode::Ld3 : Opcode::Ld);
   if (chance(2)) i.guard = any_predicate(), i.guard_negated = chance(2);
   i.ra = address_;
   i.immediate = offset;
   if (store)
     i.rb = source();
-  else
+  else if (!inval)
     i.rd = three ? destination_of_three(-1, -1) : destination();
   emit(i);
 }

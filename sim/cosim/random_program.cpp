@@ -324,7 +324,8 @@ class Generator : public ProgramStatements {
         // One lane is enough; a warp goes on if its faulty lane is left out.
         const bool some = chance(2);
         const bool three = configuration_.triples && chance(2);
-        const Opcode access = three ? Opcode::Ld3 : chance(2) ? Opcode::Ld : Opcode::St;
+        const bool inval = configuration_.sharing && chance(3);
+        const Opcode access = inval ? Opcode::Inval : three ? Opcode::Ld3 : chance(2) ? Opcode::Ld : Opcode::St;
         const bool last_word = some && !more_memory_told_;  // lane 0 reads it
         if (code == FaultCode::Misaligned) {
           emit(Opcode::Mov, address_, 0, base_);

@@ -115,7 +115,6 @@ class ShaderMemory {
     resources_.specialization = file_.specialization();
     resources_.width = frame_.width;
     resources_.height = frame_.height;
-    resources_.depth = frame_.depth;
     resources_.saved = reserve(0, 64);
     image_.memory.grow(resources_.saved);
     return std::move(resources_);

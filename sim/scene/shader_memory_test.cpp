@@ -489,7 +489,6 @@ TEST_F(ShaderMemoryTest, WordsOfPathsAreSavedBehindAllElse) {
   EXPECT_EQ(resources.saved % 64, 0u);
   const shader::Buffer& last = resources.buffers.at({0, 9});
   EXPECT_GE(resources.saved, last.address + last.bytes);
-  EXPECT_EQ(resources.depth, 3u);
 }
 
 TEST_F(ShaderMemoryTest, EachLightIsChosenWithItsProbability) {

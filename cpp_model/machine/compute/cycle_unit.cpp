@@ -1,6 +1,7 @@
 #include "machine/compute/cycle_unit.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "bits.hpp"
 
@@ -13,12 +14,12 @@ constexpr size_t index(AluType type) { return static_cast<size_t>(type); }
 
 }  // namespace
 
-CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
+CycleUnit::CycleUnit(const Configuration& configuration, std::shared_ptr<ModelMemory> memory, uint32_t unit)
     : warps_(static_cast<uint32_t>(configuration.warps)),
       lanes_(static_cast<uint32_t>(configuration.lanes)),
       counter_bits_(configuration.counter_bits),
-      host_memory_(&memory),
-      core_(configuration, memory_),
+      memory_(std::move(memory)),
+      core_(configuration, memory_->words(), unit),
       launcher_(configuration),
       instruction_cache_(configuration),
       dispatcher_(configuration),
@@ -30,7 +31,7 @@ CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
 void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   program_length_ = program_length;
   core_.reset(program_length, memory_limit);
-  memory_stale_ = true;
+  memory_->host_may_have_written();
   launcher_.reset();
   buffer_.reset();
   fetch_arbiter_ = {};
@@ -65,7 +66,7 @@ void CycleUnit::set_argument(uint32_t number, uint32_t value) {
   core_.set_argument(number, value);
   mem_.invalidate();
   instruction_cache_.invalidate();
-  memory_stale_ = true;
+  memory_->host_may_have_written();
   clock({});  // it takes a cycle
 }
 
@@ -242,10 +243,7 @@ void CycleUnit::count_pauses(bool running) {
 // ---- Warps
 
 void CycleUnit::start_warps(uint32_t warps, const LaunchCommand& launch) {
-  if (memory_stale_) {
-    memory_ = *host_memory_;
-    memory_stale_ = false;
-  }
+  memory_->before_launch();
   core_.prepare();
   for (; warps != 0; warps &= warps - 1) {
     const uint32_t warp = lowest(warps);

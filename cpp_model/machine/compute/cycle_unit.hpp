@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "config/configuration.hpp"
@@ -31,11 +32,33 @@
 
 namespace raypool {
 
-/// Works on a copy of `memory`, which must outlive it: taken at the first launch after reset() or set_argument(). Its
-/// stores go to the copy and leave through the memory port.
+/// What units of a model load from and store to: a copy of the host's memory, taken at the first launch after reset() or
+/// set_argument(). Units see each other's stores at once; where it matters that hardware sees them later, programs have
+/// to wait (docs/machine/memory.md, section 3).
+class ModelMemory {
+ public:
+  /// `host` must outlive it.
+  explicit ModelMemory(const Memory& host) : host_(&host) {}
+
+  void host_may_have_written() { stale_ = true; }
+  void before_launch() {
+    if (stale_) memory_ = *host_;
+    stale_ = false;
+  }
+  Memory& words() { return memory_; }
+
+ private:
+  const Memory* host_;
+  Memory memory_;
+  bool stale_ = true;
+};
+
+/// Stores go to the model's memory and leave through the memory port. `unit`: its number among several.
 class CycleUnit final : public ComputeUnit {
  public:
-  CycleUnit(const Configuration& configuration, const Memory& memory);
+  CycleUnit(const Configuration& configuration, std::shared_ptr<ModelMemory> memory, uint32_t unit = 0);
+  CycleUnit(const Configuration& configuration, const Memory& host)
+      : CycleUnit(configuration, std::make_shared<ModelMemory>(host)) {}
 
   void reset(uint32_t program_length, uint32_t memory_limit) override;
   void set_argument(uint32_t index, uint32_t value) override;
@@ -152,9 +175,7 @@ class CycleUnit final : public ComputeUnit {
   void record_result(uint32_t warp, const Step& step);
 
   uint32_t warps_, lanes_, counter_bits_;
-  const Memory* host_memory_;
-  Memory memory_;
-  bool memory_stale_ = true;
+  std::shared_ptr<ModelMemory> memory_;
   uint32_t program_length_ = 0;
   FunctionalCore core_;
 

@@ -24,6 +24,7 @@ class DataCache {
   /// The access of a cycle, to the quadword that was looked up in the cycle before.
   struct Access {
     bool valid = false, store = false;
+    bool inval = false;         ///< with store: an inval, which writes nothing
     bool may_allocate = false;  ///< a miss may take an MSHR
   };
   /// What becomes of it: nothing without an access, or one of hit, allocate, refuse and accept,
@@ -33,11 +34,13 @@ class DataCache {
     bool found = false;  ///< its line is in the cache
     bool match = false;  ///< ... is being fetched
     bool hit = false, allocate = false, refuse = false, accept = false;
+    bool inval = false;  ///< with accept: the line is removed
     uint32_t match_id = 0;
     uint32_t push_id = 0;  ///< with allocate: the MSHR
     uint32_t victim = 0;   ///< with allocate: the way
     bool gone() const { return hit || accept; }
-    bool push() const { return accept || allocate; }
+    bool push() const { return stores() || allocate; }
+    bool stores() const { return accept && !inval; }
   };
   struct Inputs {
     bool lookup = false;
@@ -82,6 +85,13 @@ class DataCache {
     out.hit = !in.store && out.found;
     if (out.hit) return out;
     const MissStatus::Answer answer = miss_status_.access(line());
+    if (in.inval) {
+      // Waiters are still to be served from a line that has come, or comes.
+      out.match = answer.match;
+      out.refuse = answer.match || (q_.hit_0 && (answer.locked & 1) != 0) || (q_.hit_1 && (answer.locked & 2) != 0);
+      out.inval = out.accept = !out.refuse;
+      return out;
+    }
     out.match = answer.match;
     out.match_id = answer.match_id;
     out.accept = in.store && !out.match;
@@ -98,13 +108,18 @@ class DataCache {
 
   void clock(const Inputs& in, const Outcome& out) {
     const uint32_t finished = miss_status_.finished();
-    if (out.found) sets_[line() & set_mask_].older = q_.hit_0;
-    if (out.match) miss_status_.join(out.match_id, in.access_warp);
+    Set& accessed = sets_[line() & set_mask_];
+    if (out.found) accessed.older = out.inval ? q_.hit_1 : q_.hit_0;
+    const std::array<bool, 2> removed{out.inval && q_.hit_0, out.inval && q_.hit_1};
+    if (out.match && !out.refuse) miss_status_.join(out.match_id, in.access_warp);
     if (out.allocate) miss_status_.allocate(out.push_id, line(), out.victim, in.access_warp);
     if (in.served) miss_status_.served(in.served_id, in.served_warp);
     // A cycle with a refill beat has no lookup.
     if (q_.refill) refill();
     if (in.lookup) lookup(in.lookup_quad);
+    // A lookup of the same cycle still sees the line.
+    for (size_t way = 0; way < removed.size(); ++way)
+      if (removed[way]) accessed.valid[way] = false;
     q_.refill = in.response_valid;
     q_.refill_id = in.response_id;
     q_.refill_beat = in.response_beat;

@@ -22,7 +22,7 @@ void not_modelled(Opcode opcode) {
       ": cpp_model/machine/compute/functional_core.cpp, or the ALU's header beside it, needs a case for it");
 }
 
-FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memory)
+FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memory, uint32_t unit)
     : memory_(&memory),
       lanes_(configuration.lanes),
       configuration_(configuration),
@@ -31,6 +31,7 @@ FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memor
       watched_(guarded_),
       registers_(configuration.contents() * kRegisters),
       warps_(configuration.warps, Warp(configuration)),
+      tid_alu_(unit),
       slices_(configuration.warps, configuration.lanes, configuration.intersection_words) {
   switch (lanes_) {
     case 1:
@@ -269,7 +270,7 @@ void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& 
   warp.predicates.write(instruction.rd, predicate);
 }
 
-// Loads and stores. All masked lanes are checked before any of them is served;
+// Loads, stores, and inval, which does nothing in a memory without caches. All masked lanes are checked before any of them is served;
 // misalignment is the first thing looked for.
 template <int kLanes>
 bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes) {
@@ -283,6 +284,7 @@ bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, const
   }
   if (low_bits != 0) return fault(FaultCode::Misaligned);
   if (highest >= memory_limit_ && result_.mask != 0) return fault(FaultCode::AddressOutsideMemory);
+  if (instruction.opcode == Opcode::Inval) return true;
   const bool store = instruction.opcode == Opcode::St;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);

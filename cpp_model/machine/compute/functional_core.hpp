@@ -65,8 +65,8 @@ struct Step {
 
 class FunctionalCore {
  public:
-  /// `memory` must outlive the core.
-  FunctionalCore(const Configuration& configuration, Memory& memory);
+  /// `memory` must outlive the core. `unit`: its number among several.
+  FunctionalCore(const Configuration& configuration, Memory& memory, uint32_t unit = 0);
 
   /// From now on float instructions are counted in there; it must outlive the core.
   void count_specials(SpecialCensus& census) { census_ = &census, watched_ = true; }

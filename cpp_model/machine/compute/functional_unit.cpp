@@ -16,8 +16,8 @@ constexpr int kInstructionsPerClock = 4096;  // of one warp, so that a program t
 
 class FunctionalUnit : public ComputeUnit {
  public:
-  FunctionalUnit(const Configuration& configuration, Memory& memory, SpecialCensus* census = nullptr)
-      : core_(configuration, memory),
+  FunctionalUnit(const Configuration& configuration, Memory& memory, uint32_t unit, SpecialCensus* census = nullptr)
+      : core_(configuration, memory, unit),
         lanes_(static_cast<uint32_t>(configuration.lanes)),
         reserved_(static_cast<size_t>(configuration.warps)),
         exporting_(static_cast<size_t>(configuration.warps)) {
@@ -198,13 +198,13 @@ class FunctionalUnit : public ComputeUnit {
 
 }  // namespace
 
-std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory) {
-  return std::make_unique<FunctionalUnit>(configuration, memory);
+std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory, uint32_t unit) {
+  return std::make_unique<FunctionalUnit>(configuration, memory, unit);
 }
 
 std::unique_ptr<ComputeUnit> make_counting_functional_unit(const Configuration& configuration, Memory& memory,
                                                            SpecialCensus& census) {
-  return std::make_unique<FunctionalUnit>(configuration, memory, &census);
+  return std::make_unique<FunctionalUnit>(configuration, memory, 0, &census);
 }
 
 }  // namespace raypool

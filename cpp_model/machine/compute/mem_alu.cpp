@@ -27,7 +27,8 @@ MemAlu::Quadword& MemAlu::quadword(Task& task, uint32_t address) {
 
 void MemAlu::begin(const Step& step) {
   Task& task = tasks_[step.warp];
-  task.store = step.instruction->opcode == Opcode::St;
+  task.inval = step.instruction->opcode == Opcode::Inval;
+  task.store = task.inval || step.instruction->opcode == Opcode::St;
   task.fault = step.status == Step::Status::Fault ? step.fault.code : FaultCode::None;
   task.count = 0;
   if (step.store_count != 0) {
@@ -73,7 +74,7 @@ MemAlu::End MemAlu::gather(const DataCache::Outcome& outcome) const {
 }
 
 bool MemAlu::storing(StoreEvent& event) const {
-  if (!q_.access.store || !access().accept) return false;
+  if (!q_.access.store || !access().stores()) return false;
   const Quadword& quad = tasks_[q_.access.warp].quadwords[lowest(q_.access.served)];
   event.warp = q_.access.warp;
   event.address = quad.number << 4;
@@ -98,7 +99,7 @@ MemAlu::Events MemAlu::clock(const Inputs& inputs) {
   requests_.clock(inputs.request_ready);
   if (outcome.push()) push(outcome);
   const bool first_try = outcome.access && !q_.access.store && q_.access.kind == Kind::New;
-  const Events events{first_try && outcome.hit, first_try && !outcome.hit, outcome.accept};
+  const Events events{first_try && outcome.hit, first_try && !outcome.hit, outcome.stores()};
   clock_cache(inputs, look, outcome);
   clock_end(end);
   clock_access(look);
@@ -137,7 +138,7 @@ void MemAlu::clock_sequencer(const Inputs& inputs, const End& end, bool start, b
 void MemAlu::push(const DataCache::Outcome& outcome) {
   MemoryRequest request;
   request.address = cache_.push_quad(outcome) << 4;
-  if (outcome.accept) {
+  if (outcome.stores()) {
     const Quadword& quad = tasks_[q_.access.warp].quadwords[lowest(q_.access.served)];
     request.write = true;
     request.data = quad.data;
@@ -184,6 +185,7 @@ void MemAlu::clock_access(const Look& look) {
   q_.access.first = pass.first;
   q_.access.last = look.pending_after == 0;
   q_.access.store = tasks_[pass.warp].store;
+  q_.access.inval = tasks_[pass.warp].inval;
   q_.access.kind = pass.kind;
   q_.access.warp = pass.warp;
   q_.access.mshr = pass.mshr;

@@ -29,9 +29,10 @@ class MemAlu {
     Beat data;        ///< store: what it writes
     uint8_t mask;     ///< store: bit i = word i is written
   };
-  /// A load or store of a warp, from its issue to its end. Quadwords stand in the order of their lowest lanes.
+  /// A load, store or inval of a warp, from its issue to its end. Quadwords stand in the order of their lowest lanes.
   struct Task {
-    bool store = false;
+    bool store = false;                 ///< or inval
+    bool inval = false;
     FaultCode fault = FaultCode::None;  ///< raised when the first quadword is looked up
     uint32_t count = 0;                 ///< quadwords
     uint32_t left = 0, refused = 0;     ///< of a parked task
@@ -58,7 +59,7 @@ class MemAlu {
   struct Access {  ///< registers of the access stage
     bool valid = false;
     bool any = false;  ///< not the empty pass of an empty mask
-    bool first = false, last = false, store = false;
+    bool first = false, last = false, store = false, inval = false;
     Kind kind = Kind::New;
     uint32_t warp = 0, mshr = 0;
     uint32_t served = 0;
@@ -103,7 +104,7 @@ class MemAlu {
   /// What becomes of the access of this cycle.
   DataCache::Outcome access() const {
     const Access& in = q_.access;
-    return cache_.access({in.valid && in.any, in.store, sequencer_.may_allocate(in.warp)});
+    return cache_.access({in.valid && in.any, in.store, in.inval, sequencer_.may_allocate(in.warp)});
   }
 
   const Registers& registers() const { return q_; }

@@ -15,7 +15,7 @@ struct Model {
   std::vector<CycleUnit*> units;  ///< of the device
 };
 
-/// `memory` as for CycleUnit; each unit has a copy of its own. Throws InputError unless `units` is 1, 2 or 4.
+/// `memory` as for ModelMemory, which all units share. Throws InputError unless `units` is 1, 2 or 4.
 Model make_model(const Configuration& configuration, const Memory& memory, uint32_t units);
 
 }  // namespace raypool

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// What rtl/compute/rp_tid_alu.v gives: thread, warp and block indices, dimensions, kernel arguments.
+// What rtl/compute/rp_tid_alu.v gives: thread, warp, block and unit indices, dimensions, kernel arguments.
 #pragma once
 
 #include <array>
@@ -13,6 +13,9 @@ namespace raypool {
 
 class TidAlu {
  public:
+  /// `unit`: the number of the compute unit among several.
+  explicit TidAlu(uint32_t unit) : unit_(unit) {}
+
   /// Only while idle.
   void write_argument(uint32_t index, uint32_t data) { arguments_[index] = data; }
   uint32_t argument(uint32_t index) const { return arguments_[index % kArguments]; }
@@ -35,6 +38,8 @@ class TidAlu {
         return fill(launched.threads);
       case Opcode::Blocks:
         return fill(launched.blocks);
+      case Opcode::Unit:
+        return fill(unit_);
       case Opcode::Arg:
         return fill(argument(immediate));
       default:
@@ -43,6 +48,7 @@ class TidAlu {
   }
 
  private:
+  uint32_t unit_;
   std::array<uint32_t, kArguments> arguments_{};
 };
 

@@ -2,7 +2,7 @@
 // history of the stores, stores at the port against the store trace, reads against the rules of miss-status
 // holding registers, stable payloads, bounded time; and all outputs but data against those of its class, so that a
 // cycle too many is seen, too. MODEL is a struct with the Verilated class as Unit and the parameters kWarps, kLanes,
-// kBytes, kMshrs.
+// kBytes, kMshrs, kSharing.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "bits.hpp"
+#include "isa/encoding.hpp"
 #include "machine/compute/mem_alu.hpp"
 #include "unit/common/line_memory.hpp"
 
@@ -44,6 +45,7 @@ uint32_t get(const T& port, int index) {
 struct MemTask {
   uint32_t warp = 0;
   bool store = false;
+  bool inval = false;  ///< and no store
   uint32_t mask = 0;
   uint32_t immediate = 0;
   std::vector<uint32_t> address;  ///< a lane; what ra + immediate makes
@@ -137,7 +139,7 @@ class MemAluBench {
     ASSERT_TRUE(ready_) << "bench: task without ready";
     auto& u = *unit_;
     u.task_warp_i = task.warp;
-    u.task_operation_i = task.store;
+    u.task_operation_i = static_cast<uint8_t>(instruction(opcode_of(task)).operation());
     u.task_mask_i = task.mask;
     u.task_immediate_i = task.immediate;
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -151,6 +153,7 @@ class MemAluBench {
     flight.task = task;
     flight.start = cycle;
     auto quads = quads_of(task);
+    if (task.inval) return;
     (task.store ? expected_stores : expected_loads) += quads.size();
     if (task.store) flight.stores = std::move(quads);
   }
@@ -250,6 +253,7 @@ class MemAluBench {
     static constexpr uint32_t kStrides[] = {0, 4, 4, 8, 16, 20, 64, kWayBytes, kWayBytes + 64};
     MemTask task = strided(warp, static_cast<int>(below(100)) < store_percent, crowded(), kStrides[below(9)]);
     task.immediate = below(2) ? 0 : static_cast<uint32_t>(random());
+    if (Model::kSharing && !task.store && below(4) == 0) task.inval = true;
     if (below(8) != 0) task.mask = static_cast<uint32_t>(random()) & kLaneMask;
     const bool scattered = below(3) == 0, above = upper && below(2) == 0;
     uint32_t bit = above ? any_upper_bit() : 0;
@@ -273,6 +277,7 @@ class MemAluBench {
     configuration.lanes = kLanes;
     configuration.data_cache_bytes = Model::kBytes;
     configuration.data_cache_mshrs = Model::kMshrs;
+    configuration.sharing = Model::kSharing;
     return configuration;
   }
   std::vector<Version>& history_of(uint32_t address) {
@@ -281,15 +286,19 @@ class MemAluBench {
     return versions;
   }
 
+  static Opcode opcode_of(const MemTask& task) {
+    return task.inval ? Opcode::Inval : task.store ? Opcode::St : Opcode::Ld;
+  }
+
   // What the functional core would have said of it.
   void begin_in_class(const MemTask& task) {
-    DecodedInstruction instruction;
-    instruction.opcode = task.store ? Opcode::St : Opcode::Ld;
+    DecodedInstruction decoded;
+    decoded.opcode = opcode_of(task);
     step_ = {};
     step_.status = Step::Status::Executed;
     step_.warp = task.warp;
     step_.mask = task.mask;
-    step_.instruction = &instruction;
+    step_.instruction = &decoded;
     bool misaligned = false, outside = false;
     for (uint32_t lanes = task.mask; lanes != 0; lanes &= lanes - 1) {
       const uint32_t lane = lowest(lanes), address = task.address[lane];
@@ -402,7 +411,7 @@ class MemAluBench {
     longest = std::max(longest, result.cycles);
     for (int lane = 0; lane < kLanes; ++lane) {
       result.data[lane] = get(u.done_data_o, lane);
-      if (flight->task.store || !(flight->task.mask >> lane & 1)) continue;
+      if (flight->task.store || flight->task.inval || !(flight->task.mask >> lane & 1)) continue;
       ASSERT_TRUE(may_load(flight->task.address[lane], result.data[lane], flight->start))
           << "warp " << warp << " lane " << lane << " loaded " << std::hex << result.data[lane] << " from "
           << flight->task.address[lane] << ", which held " << history_of(flight->task.address[lane]).back().value

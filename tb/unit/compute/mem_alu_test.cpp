@@ -11,18 +11,19 @@
 namespace raypool::bench {
 namespace {
 
-template <typename U, int kW, int kL, uint32_t kB, int kM>
+template <typename U, int kW, int kL, uint32_t kB, int kM, bool kI = false>
 struct Model {
   using Unit = U;
   static constexpr int kWarps = kW, kLanes = kL, kMshrs = kM;
   static constexpr uint32_t kBytes = kB;
+  static constexpr bool kSharing = kI;
 };
 using Model1x1 = Model<Vmem_alu_1x1, 1, 1, 512, 1>;
 using Model4x4 = Model<Vmem_alu_4x4, 4, 4, 1024, 2>;
 using Model8x8 = Model<Vmem_alu_8x8, 8, 8, 8192, 4>;
-using Model8x8_small = Model<Vmem_alu_8x8_small, 8, 8, 512, 1>;
+using Model8x8_small = Model<Vmem_alu_8x8_small, 8, 8, 512, 1, true>;
 using Model1x32 = Model<Vmem_alu_1x32, 1, 32, 1024, 4>;
-using Model16x4 = Model<Vmem_alu_16x4, 16, 4, 512, 16>;
+using Model16x4 = Model<Vmem_alu_16x4, 16, 4, 512, 16, true>;
 using Model32x2 = Model<Vmem_alu_32x2, 32, 2, 512, 3>;
 using Models = ::testing::Types<Model1x1, Model4x4, Model8x8, Model8x8_small, Model1x32, Model16x4, Model32x2>;
 
@@ -97,6 +98,14 @@ template <typename M>
 class MemAluOfSeveralWarps : public MemAlu<M> {};
 using ModelsOfSeveralWarps = ::testing::Types<Model4x4, Model8x8, Model8x8_small, Model16x4, Model32x2>;
 TYPED_TEST_SUITE(MemAluOfSeveralWarps, ModelsOfSeveralWarps);
+
+template <typename M>
+class MemAluThatInvalidates : public MemAlu<M> {
+ public:
+  using Bench = typename MemAlu<M>::Bench;
+};
+using ModelsThatInvalidate = ::testing::Types<Model8x8_small, Model16x4>;
+TYPED_TEST_SUITE(MemAluThatInvalidates, ModelsThatInvalidate);
 
 TYPED_TEST(MemAlu, EmptyMaskCompletesInThreeCycles) {
   typename TestFixture::Bench bench;
@@ -284,6 +293,75 @@ TYPED_TEST(MemAlu, InvalidateForgetsEverything) {
     bench.invalidate = true;
     bench.step();
     EXPECT_EQ(bench.run(load).data[0], 0xabcd0000u + static_cast<uint32_t>(i));
+  }
+}
+
+TYPED_TEST(MemAluThatInvalidates, LoadBehindAnInvalReadsTheMemory) {
+  typename TestFixture::Bench bench;
+  const MemTask load = bench.strided(0, false, 0, 4), other = bench.strided(0, false, 64, 4);
+  MemTask inval = load;
+  inval.inval = true;
+  for (uint32_t i = 0; i < 3; ++i) {
+    bench.run(load);
+    bench.run(other);
+    bench.poke(load.address[0], 0xabcd0000u + i);
+    EXPECT_EQ(bench.run(inval).cycles, this->hit_cycles(TestFixture::Bench::quads_of(inval).size()));
+    const size_t reads = bench.memory.reads();
+    EXPECT_EQ(bench.run(load).data[0], 0xabcd0000u + i);
+    bench.run(other);
+    EXPECT_EQ(bench.memory.reads(), reads + 1) << "the other line was forgotten too";
+  }
+  EXPECT_EQ(bench.writes_at_port, 0u);
+}
+
+// The way of a line that was removed is filled first, so that the other line of the set stays.
+TYPED_TEST(MemAluThatInvalidates, RemovedLineIsReplacedFirst) {
+  typename TestFixture::Bench bench;
+  const MemTask first = bench.strided(0, false, 0, 0), second = bench.strided(0, false, this->kWay, 0);
+  for (const MemTask& removed : {first, second}) {
+    const MemTask& stays = removed.address == first.address ? second : first;
+    bench.run(stays);
+    bench.run(removed);
+    MemTask inval = removed;
+    inval.inval = true;
+    bench.run(inval);
+    bench.run(bench.strided(0, false, 2 * this->kWay, 0));
+    const size_t reads = bench.memory.reads();
+    bench.run(stays);
+    EXPECT_EQ(bench.memory.reads(), reads);
+  }
+}
+
+// Each warp has a line of its own, in sets where all others thrash. Another unit stores there, then the warp reads it.
+TYPED_TEST(MemAluThatInvalidates, WarpsSeeWhatAnotherUnitStores) {
+  for (uint32_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    typename TestFixture::Bench bench(seed, TypeParam::kBytes * 32);
+    bench.memory.behaviour.latency = 1 + static_cast<int>(seed);
+    bench.memory.behaviour.jitter = seed % 2 == 0 ? 20 : 0;
+    const auto own = [&](uint32_t warp) {
+      return bench.strided(warp, false, (16 + warp) * this->kWay + 64 * (warp % 2), 4);
+    };
+    std::vector<bool> forgotten(TypeParam::kWarps);
+    for (int given = 0; given < 3000;) {
+      const auto warp = static_cast<uint32_t>(bench.random() % TypeParam::kWarps);
+      if (!bench.ready() || bench.flights[warp]) {
+        bench.step();
+        continue;
+      }
+      MemTask task = own(warp);
+      if (forgotten[warp]) {
+        forgotten[warp] = false;  // and this load must find the new words
+      } else if (bench.random() % 2 == 0) {
+        for (const uint32_t address : task.address) bench.poke(address, static_cast<uint32_t>(bench.random()));
+        task.inval = forgotten[warp] = true;
+      } else {
+        task = bench.any_task(warp, 2, 3, 30);
+      }
+      bench.step(&task);
+      ++given;
+    }
+    bench.drain();
   }
 }
 
