@@ -114,6 +114,7 @@ void add_members(const Module& module, uint32_t type, const std::string& prefix,
     member.is_address = scalar.kind == TypeKind::Pointer || module.is_wide(its);
     if (member.is_address) {
       member.is_float = false;
+      member.row_stride = 8;
       members.push_back(member);
       continue;
     }

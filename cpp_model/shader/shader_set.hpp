@@ -22,7 +22,7 @@ namespace raypool::shader {
 enum class BindingKind : uint8_t { Tree, Picture, Block, Buffer, Textures };
 
 /// A member of a uniform block or of the push constants: scalars, vectors and matrices of floats or 32-bit integers,
-/// and arrays of them.
+/// addresses, and arrays of them.
 struct Member {
   std::string name;
   uint32_t offset = 0;  ///< bytes

@@ -181,8 +181,8 @@ class ShaderMemory {
     for (const shader::Member& member : members) {
       const std::string where = fmt::format("{}: {}: member '{}'", set_.folder(), name, member.name);
       const std::optional<JsonPlace> given = values ? values->find(member.name.c_str()) : std::nullopt;
-      if (member.is_address) {
-        put_address(member, given, where, words);
+      if (member.is_address || (given && is_address(*given))) {
+        put_addresses(member, given, where, words);
         continue;
       }
       if (given && !given->json().is_string()) {
@@ -210,16 +210,37 @@ class ShaderMemory {
                                  file_.path()));
   }
 
-  void put_address(const shader::Member& member, const std::optional<JsonPlace>& given, const std::string& where,
-                   std::vector<shader::Word>& words) {
+  /// Whether it is an address, or a list that begins with one.
+  static bool is_address(const JsonPlace& given) {
+    if (given.json().is_array() && given.size() > 0) return is_address(given.at(size_t{0}));
+    return given.json().is_object();
+  }
+  /// One for each element, of two words. A uvec2 takes one too.
+  void put_addresses(const shader::Member& member, const std::optional<JsonPlace>& given, const std::string& where,
+                     std::vector<shader::Word>& words) {
     if (!given) {
       throw InputError(fmt::format("{} is the address of a buffer: say in {} what it holds, as {{\"address\": ...}}",
                                    where, file_.path()));
     }
-    const size_t place = member.offset / 4;
-    words.resize(std::max(words.size(), place + 2));
-    words[place] = {address_of(*given), std::nullopt};
-    words[place + 1] = {0, std::nullopt};
+    const bool is_pair = !member.is_float && member.rows == 2 && member.columns == 1;
+    if (!member.is_address && !is_pair) {
+      given->fail(
+          fmt::format("is an address, and member '{}' has no room for one: declare it as a uint64_t, a "
+                      "buffer_reference or a uvec2",
+                      member.name));
+    }
+    const uint32_t rows = member.is_address ? member.rows : 1;
+    const std::vector<JsonPlace> list = leaves_of(*given);
+    if (list.size() != size_t{member.elements} * rows) {
+      given->fail(fmt::format("has {} address{}, and member '{}' has room for {}: give as many", list.size(),
+                              list.size() == 1 ? "" : "es", member.name, member.elements * rows));
+    }
+    for (uint32_t i = 0; i < list.size(); ++i) {
+      const size_t place = (member.offset + i / rows * member.element_stride + i % rows * member.row_stride) / 4;
+      words.resize(std::max(words.size(), place + 2));
+      words[place] = {address_of(list[i]), std::nullopt};
+      words[place + 1] = {0, std::nullopt};
+    }
   }
   /// {"address": what a buffer may hold}; the same buffer for the same words.
   uint32_t address_of(const JsonPlace& given) {

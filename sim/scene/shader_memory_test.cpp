@@ -66,6 +66,9 @@ Member vector(const std::string& name, uint32_t offset, uint32_t rows = 3) {
   return {name, offset, rows, 1, 1, 4, 0, 0, true};
 }
 Member address(const std::string& name, uint32_t offset) { return {name, offset, 1, 1, 1, 4, 0, 0, false, true}; }
+Member addresses(const std::string& name, uint32_t offset, uint32_t elements, uint32_t stride) {
+  return {name, offset, 1, 1, elements, 8, 0, stride, false, true};
+}
 Member matrix(const std::string& name, uint32_t offset) { return {name, offset, 4, 4, 1, 4, 16, 0, true}; }
 
 Scene square() {
@@ -354,6 +357,40 @@ TEST_F(ShaderMemoryTest, AFileDescribesBuffersThatOthersNameByTheirAddresses) {
   const std::vector<uint32_t> vertex = words({block[2].bits + 16, 16});
   EXPECT_EQ(as_float(vertex[0]), 1) << "of the second vertex";
   EXPECT_EQ(as_float(vertex[3]), -1);
+}
+
+TEST_F(ShaderMemoryTest, EachElementOfAnArrayOfAddressesHasItsOwn) {
+  describe(R"({"bindings": [{"binding": 3, "values": {
+      "buffers": [{"address": {"integers": [5]}}, {"address": {"integers": [6]}}, {"address": {"integers": [7]}}],
+      "two": [[{"address": {"integers": [7]}}], [{"address": {"integers": [8]}}]]}}],
+    "push_constants": {"pair": {"address": {"integers": [9]}},
+      "pairs": [{"address": {"integers": [10]}}, {"address": {"integers": [11]}}]}})");
+  DeclaredSet declared = set().add(0, 3, BindingKind::Block, "b");
+  declared.add_member(addresses("buffers", 16, 3, 16)).add_member({"two", 64, 2, 1, 1, 8, 0, 0, false, true});
+  declared.push_constants_ = {{"pair", 0, 2, 1, 1, 4, 0, 0, false}, {"pairs", 8, 2, 1, 2, 4, 0, 8, false}};
+  const shader::Resources resources = build(full_square(), declared);
+  const auto leads_to = [&](const std::vector<shader::Word>& all, size_t word) {
+    EXPECT_EQ(all.at(word + 1).bits, 0u) << "the upper half of an address";
+    return words({all[word].bits, 4}).at(0);
+  };
+  const std::vector<shader::Word>& block = resources.blocks.at({0, 3});
+  for (uint32_t i = 0; i < 3; ++i) EXPECT_EQ(leads_to(block, 4 + 4 * i), 5 + i);
+  EXPECT_EQ(leads_to(block, 16), 7u);
+  EXPECT_EQ(leads_to(block, 18), 8u);
+  for (uint32_t i = 0; i < 3; ++i) EXPECT_EQ(leads_to(resources.push_constants, 2 * i), 9 + i);
+
+  const auto refused = [&](const std::string& buffers, const std::string& part) {
+    describe(R"({"bindings": [{"binding": 3, "values": {"buffers": )" + buffers + "}}]}");
+    DeclaredSet one = set().add(0, 3, BindingKind::Block, "b").add_member(addresses("buffers", 16, 3, 16));
+    expect_refusal(one, part);
+  };
+  refused(R"({"address": "indices"})",
+          "values.buffers has 1 address, and member 'buffers' has room for 3: give as many");
+  refused(R"([{"address": "indices"}, 7, 8])", "values.buffers[1] is 7");
+  describe(R"({"push_constants": {"scale": {"address": "indices"}}})");
+  DeclaredSet scaled = set();
+  scaled.push_constants_ = {vector("scale", 0, 2)};
+  expect_refusal(scaled, "push_constants.scale is an address, and member 'scale' has no room for one: declare it");
 }
 
 TEST_F(ShaderMemoryTest, AFileDescribesMaterialsOfAnyLayout) {

@@ -81,14 +81,6 @@ std::string shape_of(uint32_t rows, uint32_t columns, uint32_t elements) {
   return text;
 }
 
-void flatten(const JsonPlace& place, std::vector<JsonPlace>& numbers) {
-  if (!place.json().is_array()) {
-    numbers.push_back(place);
-    return;
-  }
-  for (size_t i = 0; i < place.size(); ++i) flatten(place.at(i), numbers);
-}
-
 }  // namespace
 
 ShaderValues shader_values(const Scene& scene, const Surfaces& surfaces, const ShaderLights& lights,
@@ -173,9 +165,18 @@ uint32_t bits_of(const JsonPlace& number, bool is_float) {
   return value < 0 ? static_cast<uint32_t>(static_cast<int32_t>(value)) : static_cast<uint32_t>(value);
 }
 
+std::vector<JsonPlace> leaves_of(const JsonPlace& place) {
+  if (!place.json().is_array()) return {place};
+  std::vector<JsonPlace> leaves;
+  for (size_t i = 0; i < place.size(); ++i) {
+    const std::vector<JsonPlace> its = leaves_of(place.at(i));
+    leaves.insert(leaves.end(), its.begin(), its.end());
+  }
+  return leaves;
+}
+
 void put_numbers(const shader::Member& member, const JsonPlace& numbers, std::vector<shader::Word>& words) {
-  std::vector<JsonPlace> list;
-  flatten(numbers, list);
+  const std::vector<JsonPlace> list = leaves_of(numbers);
   const size_t wanted = size_t{member.elements} * member.columns * member.rows;
   if (list.size() != wanted) {
     numbers.fail(fmt::format("has {} number{}; member '{}' is {}: give {}", list.size(), list.size() == 1 ? "" : "s",

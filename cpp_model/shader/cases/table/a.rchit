@@ -8,6 +8,11 @@ layout(buffer_reference, scalar) readonly buffer Indices { ivec3 of[]; };
 layout(buffer_reference, scalar) readonly buffer Materials { Material of[]; };
 layout(buffer_reference, scalar) readonly buffer Numbers { int of[]; };
 layout(set = 1, binding = 0, scalar) readonly buffer Objects { Object objects[]; };
+layout(push_constant, std430) uniform Constants {
+  int frame;
+  Numbers numbers[2];
+  uvec2 indices;
+} constants;
 layout(shaderRecordEXT, std430) buffer Record {
   float weights[2];
   uint number;
@@ -43,5 +48,7 @@ void main() {
                             dot(hit.normal, gl_WorldRayDirectionEXT) > 0.0 ? -hit.normal : hit.normal);
   traceRayEXT(raypool_tree, gl_RayFlagsNoneEXT, 0xff, 1, 0, 1, origin, 0.0, gl_WorldRayDirectionEXT * -1.0, 1e30, 1);
   put(6u, blocked == 3u || blocked == 4u);
+  const bool is_first = constants.numbers[0].of[gl_PrimitiveID] == number;
+  put(7u, is_first && constants.numbers[1].of[2] == 9 && Indices(constants.indices).of[gl_PrimitiveID] == corners);
   ++payload.count;
 }
