@@ -99,11 +99,12 @@ layout(set = 0, binding = 9, scalar) readonly buffer RaypoolLights { RaypoolLigh
 // Linear, also where the file has them in sRGB.
 layout(set = 0, binding = 10) uniform sampler2D raypool_textures[];
 
-// What RaypoolHit::material is the address of: the colours of the built-in kernels, and the whole material.
+// What RaypoolHit::material is the address of: the two colours that the built-in kernels use, and the way to the whole
+// material.
 struct RaypoolRecord {
-  vec3 diffuse;
-  uint material;  // byte address of the RaypoolMaterial
-  vec3 reflectance;
+  vec3 diffuse;      // the light that is scattered in all directions, for each colour its share: 0 .. 1
+  uint material;     // byte address of the RaypoolMaterial
+  vec3 reflectance;  // the light that is mirrored, the same; 0: the surface is no mirror
 };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer RaypoolRecordAt { RaypoolRecord record; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer RaypoolMaterialAt {

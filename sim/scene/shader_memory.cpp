@@ -338,7 +338,7 @@ class ShaderMemory {
       return [this, of](size_t i, Words& words) { append_words(words, of(surfaces_.materials[i])); };
     };
     const auto texture = [&](std::optional<uint32_t> SurfaceMaterial::*member) {
-      return field([member](const SurfaceMaterial& m) { return (m.*member) ? *(m.*member) + 1 : 0u; });
+      return field([member](const SurfaceMaterial& m) { return texture_number(m.*member); });
     };
     using Of = const SurfaceMaterial&;
     return {{"base_color", field([](Of m) { return m.base_color; })},
@@ -359,7 +359,8 @@ class ShaderMemory {
             {"metallic_roughness_texture", texture(&SurfaceMaterial::metallic_roughness_texture)}};
   }
   static Vec3 rgb(const Rgba& color) { return {color[0], color[1], color[2]}; }
-  /// At normal incidence; 0.04 for the part that is not metal.
+  /// The share of light that is mirrored where it comes straight at the surface, for each colour: of metals their base
+  /// colour, of all else 0.04.
   static Vec3 reflectance(const SurfaceMaterial& m) {
     const float of_plastic = 0.04f * (1 - m.metallic);
     return rgb(m.base_color) * m.metallic + Vec3{of_plastic, of_plastic, of_plastic};
@@ -450,9 +451,11 @@ class ShaderMemory {
     }
     return words;
   }
-  /// Texture 0 is white: those of the surfaces begin at 1.
+  /// As shaders count textures. Texture 0 is white: those of the surfaces begin at 1.
+  static uint32_t texture_number(const std::optional<uint32_t>& of_surfaces) {
+    return of_surfaces ? *of_surfaces + 1 : 0;
+  }
   static ShaderMaterial shader_material(const SurfaceMaterial& material) {
-    const auto texture = [](const std::optional<uint32_t>& number) { return number ? *number + 1 : 0; };
     return {material.base_color,
             material.emission,
             material.metallic,
@@ -461,9 +464,9 @@ class ShaderMemory {
             material.ior,
             material.alpha_cutoff,
             static_cast<uint32_t>(material.alpha_mode),
-            texture(material.base_color_texture),
-            texture(material.emission_texture),
-            texture(material.metallic_roughness_texture)};
+            texture_number(material.base_color_texture),
+            texture_number(material.emission_texture),
+            texture_number(material.metallic_roughness_texture)};
   }
 
   // Textures.
