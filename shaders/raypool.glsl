@@ -86,6 +86,8 @@ layout(set = 0, binding = 2, scalar) uniform RaypoolFrame {
   uint lights;          // elements of raypool_lights; at least 1
   float total_weight;   // a triangle light's probability is its area times raypool_luminance(color) / total_weight
   float far;            // longer than any distance within the scene
+  vec3 alpha_center;    // of a sphere around all triangles that are not RAYPOOL_OPAQUE: light may pass through holes in
+  float alpha_radius;   // them. 0: there are none
 } raypool_frame;
 // The vertices of each triangle, by gl_PrimitiveID.
 layout(set = 0, binding = 3, scalar) readonly buffer RaypoolIndices { uvec3 raypool_indices[]; };
@@ -174,6 +176,14 @@ vec4 raypool_color(uint triangle, vec2 barycentrics) {
 // Of raypool_textures; 0 is white.
 vec4 raypool_texture(uint number, vec2 texcoord) {
   return textureLod(raypool_textures[nonuniformEXT(number)], texcoord, 0.0);
+}
+
+// Whether there may be holes, or anything else that lets light pass, between `origin` and `origin + direction`.
+bool raypool_near_alpha(vec3 origin, vec3 direction) {
+  vec3 to_center = raypool_frame.alpha_center - origin;
+  float nearest = clamp(dot(to_center, direction) / max(dot(direction, direction), 1e-30), 0.0, 1.0);
+  vec3 apart = to_center - nearest * direction;
+  return dot(apart, apart) < raypool_frame.alpha_radius * raypool_frame.alpha_radius;
 }
 
 float raypool_luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }

@@ -2,6 +2,10 @@
 // One step of a path. The surface is metallic-roughness as glTF defines it: of its parts (cut out, glass, highlight,
 // matt) a random number chooses the one that the path follows. A shadow ray finds the same light more directly: how
 // likely each way is decides its share (multiple importance sampling with the balance heuristic).
+//
+// A shadow ray ends at the first triangle, even where that has a hole. So that lamps shine through holes, the path's own
+// ray goes to the lamp now and then in place of going on (TO_LAMP). At each hole it sends a shadow ray that looks
+// whether the rest of the way is free, and goes on behind it. Scenes without holes have no code for that.
 #extension GL_EXT_ray_tracing : require
 #extension GL_GOOGLE_include_directive : require
 #include "raypool.glsl"
@@ -26,6 +30,7 @@ const uint RANDOM_PLACE = 5u;  // and 6
 const uint RANDOM_SKY = 7u;
 const uint RANDOM_END = 8u;
 const uint RANDOM_SLOPE = 9u;  // and 10
+const uint RANDOM_WAY = 11u;
 
 vec3 random_of(uint seed, uint which) {
   return random_direction(raypool_random(seed, which), raypool_random(seed, which + 1u));
@@ -93,9 +98,11 @@ void main() {
   RaypoolMaterialAt at = RaypoolMaterialAt(uvec2(raypool_record(hit.material).material, 0u));
   const vec2 texcoord = raypool_texcoord(triangle, hit.barycentrics);
   const bool sky = raypool_frame.background != vec3(0.0);
+  const bool holes = raypool_frame.alpha_radius > 0.0;
+  const bool to_lamp = holes && uint(path.density) == TO_LAMP;
 
   // What the path finds. A light that a shadow ray could have found as well counts by its share.
-  vec3 found = path.weight * at.material.emission;
+  vec3 found = to_lamp ? vec3(0.0) : path.weight * at.material.emission;
   if (found != vec3(0.0)) {
     found *= raypool_texture(at.material.emission_texture, texcoord).rgb;
     const float density = density_of(path.density);
@@ -125,12 +132,19 @@ void main() {
   // And what the shadow ray brings: the sky from where the path goes on to, or a light.
   vec3 shadow_direction = vec3(0.0);
   float shadow_limit = 1.0;
-  bool to_sky = sky;
+  bool to_sky = sky && !to_lamp;
   float sky_share = 1.0;
+  bool through_holes = false;  // may the light come
   contribution = vec3(0.0);
 
   const float part = raypool_random(seed, RANDOM_PART);
-  if (part >= coverage) {
+  if (to_lamp) {
+    leaves = false;
+    passed = vec3(1.0 - coverage);
+    bounce = (1.0 - gl_HitTEXT) * ray;  // up to the lamp, as before
+    contribution = path.weight * passed;
+    shadow_direction = bounce;
+  } else if (part >= coverage) {
     leaves = false;  // straight on
   } else if (part < coverage * at.material.transmission) {
     const float ratio = behind ? at.material.ior : 1.0 / at.material.ior;
@@ -199,12 +213,15 @@ void main() {
         shadow_direction = lit.direction;
         // The light's own triangle does not hide it.
         if (lit.likelihood > 0.0) shadow_limit = 0.9995;
+        // Lamps that are triangles are found behind holes by chance. The last ray meets nothing more.
+        through_holes = holes && lit.likelihood == 0.0 && hit.depth < raypool_frame.depth &&
+                        raypool_near_alpha(point, lit.direction);
       }
     }
   }
 
   path.weight *= passed;
-  path.density = density_bits(bounce_density);
+  path.density = to_lamp ? uint16_t(TO_LAMP) : density_bits(bounce_density);
   if (to_sky) {
     contribution = path.weight * raypool_frame.background * sky_share;
     shadow_direction = bounce;
@@ -212,12 +229,25 @@ void main() {
   }
 
   float going_on = largest(path.weight);
-  if (hit.depth >= sure_depth) {
+  if (!to_lamp && hit.depth >= sure_depth) {
     const float keep = min(going_on * float(raypool_frame.samples), 1.0);
     if (raypool_random(seed, RANDOM_END) < keep) {
       path.weight /= keep;
     } else {
       going_on = 0.0;
+    }
+  }
+
+  // Every other ray goes to the lamp, and every ray where the path ends. Each counts for those that go the other way.
+  if (holes && through_holes && contribution != vec3(0.0)) {
+    const float chance = going_on > 0.0 ? 0.5 : 1.0;
+    if (raypool_random(seed, RANDOM_WAY) < chance) {
+      path.weight = contribution / chance;
+      path.density = uint16_t(TO_LAMP);
+      bounce = shadow_direction;
+      going_on = 1.0;
+    } else {
+      path.weight *= 2.0;
     }
   }
 

@@ -572,6 +572,20 @@ TEST_F(ShaderMemoryTest, EachLightIsChosenWithItsProbability) {
   EXPECT_EQ(own.lights[0].probability, 1);
 }
 
+TEST_F(ShaderMemoryTest, AlphaIsWithinItsSphere) {
+  Scene scene = full_square();
+  const auto values = [&] {
+    return shader_values(scene, *scene.surfaces, shader_lights(scene, *scene.surfaces, 1), frame_of(scene), 1);
+  };
+  // Triangle 0, with corners (0, 0), (2, 0) and (2, 2), is blended.
+  EXPECT_EQ(values().at("alpha_center").numbers, (std::vector<double>{1, 1, 0}));
+  EXPECT_NEAR(values().at("alpha_radius").numbers[0], std::sqrt(2.0), 1e-3);
+  auto surfaces = std::make_shared<Surfaces>(*scene.surfaces);
+  surfaces->materials[1].alpha_mode = AlphaMode::Opaque;
+  scene.surfaces = surfaces;
+  EXPECT_EQ(values().at("alpha_radius").numbers[0], 0);
+}
+
 TEST_F(ShaderMemoryTest, TheSchemaListsTheKnownValues) {
   const Scene scene = full_square();
   const ShaderValues values =
@@ -632,7 +646,7 @@ void main() {
   expect_offsets("%RaypoolMaterial", {0, 12, 16, 28, 32, 36, 40, 44, 48, 52, 56, 60});
   expect_offsets("%RaypoolLight", {0, 12, 16, 28, 32, 44, 48, 60, 64, 68, 72, 76});
   expect_offsets("%RaypoolRecord", {kMaterialDiffuse, kMaterialSurface, kMaterialReflectance});
-  EXPECT_EQ(offsets["%RaypoolFrame"].size(), 17u);
+  EXPECT_EQ(offsets["%RaypoolFrame"].size(), 19u);
 }
 
 }  // namespace

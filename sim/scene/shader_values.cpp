@@ -57,6 +57,32 @@ CameraMatrices camera_matrices(const ShaderFrame& frame, double far) {
           {half_width, 0, 0, 0, 0, -half_height, 0, 0, 0, 0, 0, 1 / b, 0, 0, -1, a / b}};
 }
 
+/// Around all triangles of which light may pass parts; the radius is 0 if there are none.
+struct Sphere {
+  Vec3d center;
+  double radius = 0;
+};
+Sphere around_alpha(const Scene& scene, const Surfaces& surfaces) {
+  std::vector<Vec3d> corners;
+  for (uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (surfaces.materials[scene.triangle_materials[i]].alpha_mode == AlphaMode::Opaque) continue;
+    for (int k = 0; k < 3; ++k) corners.push_back(scene.corner(i, k).as<double>());
+  }
+  if (corners.empty()) return {};
+  Vec3d low = corners[0], high = corners[0];
+  for (const Vec3d& corner : corners) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], corner[axis]);
+      high[axis] = std::max(high[axis], corner[axis]);
+    }
+  }
+  Sphere sphere{(low + high) * 0.5, 0};
+  for (const Vec3d& corner : corners) sphere.radius = std::max(sphere.radius, length(corner - sphere.center));
+  constexpr double kRoundings = 1 + 1e-4;  // of what shaders compute with it
+  sphere.radius *= kRoundings;
+  return sphere;
+}
+
 std::string plain(const std::string& name) {
   std::string text;
   for (const char c : name) {
@@ -92,6 +118,7 @@ ShaderValues shader_values(const Scene& scene, const Surfaces& surfaces, const S
   ShaderValue sample = whole_value(0);
   sample.argument = kSampleArgument;
   const CameraMatrices matrices = camera_matrices(frame, far);
+  const Sphere alpha = around_alpha(scene, surfaces);
   return {{"eye", vector_value(get(argument::kEye), 1)},
           {"corner", vector_value(get(argument::kCorner), 0)},
           {"step_x", vector_value(get(argument::kStepX), 0)},
@@ -109,6 +136,8 @@ ShaderValues shader_values(const Scene& scene, const Surfaces& surfaces, const S
           {"lights", whole_value(size32(lights.lights))},
           {"total_weight", float_value(static_cast<double>(lights.total_weight))},
           {"far", float_value(far)},
+          {"alpha_center", vector_value(alpha.center, 1)},
+          {"alpha_radius", float_value(alpha.radius)},
           {"view", matrix_value(matrices.view)},
           {"projection", matrix_value(matrices.projection)},
           {"inverse_view", matrix_value(matrices.inverse_view)},

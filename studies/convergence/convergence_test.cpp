@@ -105,6 +105,20 @@ Scene rough_box() {
   return roughened(scene_of("area-light", kNarrow));
 }
 
+/// The room with a lamp that is a point, which shines through the box and the ball in it: half of the light passes each
+/// of their sides.
+Scene sheer_room() {
+  Scene scene = roughened(scene_of("cornell"));
+  Surfaces surfaces = *scene.surfaces;
+  for (uint32_t i = 0; i < surfaces.materials.size(); ++i) {
+    if (scene.materials[i].name != "mirror" && scene.materials[i].name != "gold") continue;
+    surfaces.materials[i].alpha_mode = AlphaMode::Blend;
+    surfaces.materials[i].base_color[3] = 0.5f;
+  }
+  scene.surfaces = std::make_shared<const Surfaces>(std::move(surfaces));
+  return scene;
+}
+
 std::string described(const Comparison& c) {
   return fmt::format("whole {:.2f}% +- {:.2f}%; blocks {:.2f}%, noise {:.2f}%, scatter {:.2f}", 100 * c.whole,
                      100 * c.whole_error, 100 * c.typical, 100 * c.noise, c.scatter);
@@ -138,8 +152,10 @@ TEST_F(PathSet, ConvergesToTheReference) {
     uint32_t depth, samples;
     double error;  // more were too noisy to tell
   };
-  const std::vector<Case> cases = {
-      {rough_box(), 1, 512, 0.003}, {rough_box(), 5, 96, 0.01}, {roughened(scene_of("features")), 1, 96, 0.03}};
+  const std::vector<Case> cases = {{rough_box(), 1, 512, 0.003},
+                                   {rough_box(), 5, 96, 0.01},
+                                   {sheer_room(), 4, 96, 0.02},
+                                   {roughened(scene_of("features")), 1, 96, 0.03}};
   for (const Case& each : cases) {
     const Comparison found = compared(task(each.depth, each.samples), each.scene);
     fmt::print("{} at depth {}: {}\n", each.scene.name, each.depth, described(found));
@@ -246,6 +262,24 @@ TEST_F(SeededBug, IsDetected) {
   const PictureSpread reference = draw_reference(task(5, 96), box);
   for (const Bug& bug : bugs) {
     const Comparison found = compare(with(bug.file, bug.right, bug.wrong, task(5, 96), box), reference);
+    fmt::print("{}: {}\n", bug.name, described(found));
+    EXPECT_FALSE(agrees(found)) << bug.name;
+  }
+}
+
+TEST_F(SeededBug, IsDetectedBehindHoles) {
+  struct Bug {
+    const char *name, *right, *wrong;
+  };
+  const std::vector<Bug> bugs = {
+      {"shadow rays that end at holes", "holes && lit.likelihood == 0.0", "false"},
+      {"paths that count for nothing else", "path.weight *= 2.0;", ""},
+      {"lamps that count once", "contribution / chance", "contribution"},
+      {"lamps that count at every hole", "passed = vec3(1.0 - coverage);", "passed = vec3(1.0);"},
+  };
+  const PictureSpread reference = draw_reference(task(4, 96), sheer_room());
+  for (const Bug& bug : bugs) {
+    const Comparison found = compare(with("path.rchit", bug.right, bug.wrong, task(4, 96), sheer_room()), reference);
     fmt::print("{}: {}\n", bug.name, described(found));
     EXPECT_FALSE(agrees(found)) << bug.name;
   }

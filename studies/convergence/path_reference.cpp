@@ -65,24 +65,26 @@ Vec3d PathReference::sample(uint32_t x, uint32_t y, Random& random) const {
       sum = sum + times(path.weight, meeting->emission) * counts;
     }
     const Reflection reflection(meeting->reflecting, path.ray.direction * -1.0);
-    const bool last = depth == depth_;
+    const uint32_t left = depth_ - depth;
     if (reflecting_part(*meeting) > 0)
-      sum = sum + times(path.weight, light_on(*meeting, reflection, last, random)) * reflecting_part(*meeting);
-    if (!last) go_on(path, *meeting, reflection, random);
+      sum = sum + times(path.weight, light_on(*meeting, reflection, left, random)) * reflecting_part(*meeting);
+    if (left > 0) go_on(path, *meeting, reflection, random);
   }
   return sum;
 }
 
-/// What lights add directly, to the viewer.
-Vec3d PathReference::light_on(const Meeting& meeting, const Reflection& reflection, bool last, Random& random) const {
+/// What lights add directly, to the viewer: points through so many holes at most.
+Vec3d PathReference::light_on(const Meeting& meeting, const Reflection& reflection, uint32_t left,
+                              Random& random) const {
   Vec3d sum;
   for (size_t i = 0; i < scene_.beams(); ++i) {
     const ReferenceScene::Beam beam = scene_.beam(i, meeting.place);
     const Vec3d value = times(reflection.value(normalized(beam.to_light)), beam.irradiance);
-    if (largest_channel(value) > 0 && scene_.sees(meeting.place, meeting.face, meeting.place + beam.to_light))
-      sum = sum + value;
+    if (largest_channel(value) > 0) {
+      sum = sum + value * scene_.share_through_holes(meeting.place, meeting.face, meeting.place + beam.to_light, left);
+    }
   }
-  return scene_.has_shining_triangles() ? sum + shining_on(meeting, reflection, last, random) : sum;
+  return scene_.has_shining_triangles() ? sum + shining_on(meeting, reflection, left == 0, random) : sum;
 }
 
 Vec3d PathReference::shining_on(const Meeting& meeting, const Reflection& reflection, bool last, Random& random) const {

@@ -19,7 +19,7 @@ class PathReference {
  private:
   struct Path;
   PathRay eye_ray(double x, double y) const;
-  Vec3d light_on(const Meeting& meeting, const Reflection& reflection, bool last, Random& random) const;
+  Vec3d light_on(const Meeting& meeting, const Reflection& reflection, uint32_t left, Random& random) const;
   Vec3d shining_on(const Meeting& meeting, const Reflection& reflection, bool last, Random& random) const;
   void go_on(Path& path, const Meeting& meeting, const Reflection& reflection, Random& random) const;
   void pass_glass(Path& path, const Meeting& meeting, Random& random) const;

@@ -179,6 +179,23 @@ bool ReferenceScene::sees(const Vec3d& place, const Vec3d& face, const Vec3d& po
   return !embree_.occluded(query);
 }
 
+double ReferenceScene::share_through_holes(const Vec3d& place, const Vec3d& face, const Vec3d& point,
+                                           uint32_t most) const {
+  double share = 1;
+  Vec3d from = place, side = face;
+  for (uint32_t met = 0; share > 0; ++met) {
+    if (sees(from, side, point)) return share;
+    if (met == most) return 0;
+    const Vec3d origin = leaving(from, side, {}).origin;
+    const std::optional<Meeting> meeting = meet({origin, normalized(point - origin)});
+    if (!meeting) return 0;
+    share *= 1 - meeting->coverage;
+    from = meeting->place;
+    side = meeting->face * -1.0;
+  }
+  return 0;
+}
+
 LitPoint ReferenceScene::shining_point(Random& random) const {
   const double chosen = uniform(random) * sums_.back();
   const auto found = std::upper_bound(sums_.begin(), sums_.end(), chosen);

@@ -45,6 +45,8 @@ class ReferenceScene {
   std::optional<Meeting> meet(const PathRay& ray) const;
   /// From a surface, to one side of its face: whether nothing lies before this point.
   bool sees(const Vec3d& place, const Vec3d& face, const Vec3d& point) const;
+  /// The share of light that comes straight from there, through holes and blended surfaces, so many at most.
+  double share_through_holes(const Vec3d& place, const Vec3d& face, const Vec3d& point, uint32_t most) const;
   /// The ray that leaves a place on this side.
   PathRay leaving(const Vec3d& place, const Vec3d& side, const Vec3d& direction) const;
 
