@@ -57,7 +57,7 @@ struct RaypoolLight {
   vec3 edge;          // of a triangle the edge to its third corner
   float spot_offset;  // see spot_scale
   vec3 color;         // linear
-  float probability;  // of raypool_choose_light() choosing it: its share of all lights' power, about
+  float probability;  // of raypool_choose_light() choosing it: its share of the light on what is seen, about
   float threshold;    // for raypool_choose_light()
   uint other;         // for raypool_choose_light()
   float range;        // beyond this distance it gives nothing; 0: there is no such

@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "bits.hpp"
+#include "scene/light_survey.hpp"
 
 namespace raypool {
 namespace {
-
-/// As raypool_luminance().
-double luminance(const Vec3& color) {
-  const Vec3d c = color.as<double>();
-  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
 
 /// The area times luminance of a surface of about this power. `diagonal` is that of what is lit.
 double weight_of(const SurfaceLight& light, double diagonal) {
@@ -71,15 +67,49 @@ void set_thresholds(std::vector<ShaderLight>& lights, const std::vector<double>&
   }
 }
 
+/// Of all lights, at each place, one is chosen and counts 1/p times what it gives, f. The variance of that is least
+/// where p is proportional to the root of the mean of f^2 over the places (importance sampling: Kahn and Marshall,
+/// "Methods of reducing sample size in Monte Carlo computations", 1953). A survey measures f at some places of the
+/// frame. What it has overlooked is found still, as a part of the choice is by power (defensive mixture: Hesterberg,
+/// "Weighted average importance sampling and defensive mixture distributions", 1995).
+///
+/// Triangles, from `first_triangle` on, keep their weights: shaders compute their probabilities of area and luminance.
+void weigh_by_survey(LightSurvey survey, const std::vector<ShaderLight>& lights, size_t first_triangle,
+                     std::vector<double>& weights) {
+  constexpr double kByPower = 0.1;
+  const auto from = [&](size_t i) { return static_cast<ptrdiff_t>(i); };
+  // The triangles are one group, each other light is one of its own.
+  std::vector<double> power(weights.begin(), weights.begin() + from(first_triangle)), seen;
+  for (size_t i = 0; i < first_triangle; ++i) seen.push_back(survey.strength({lights[i]}, {weights[i]}));
+  if (first_triangle < lights.size()) {
+    const std::vector<ShaderLight> triangles(lights.begin() + from(first_triangle), lights.end());
+    const std::vector<double> its(weights.begin() + from(first_triangle), weights.end());
+    power.push_back(std::accumulate(its.begin(), its.end(), 0.0));
+    seen.push_back(survey.strength(triangles, its));
+  }
+  const double all_power = std::accumulate(power.begin(), power.end(), 0.0);
+  const double all_seen = std::accumulate(seen.begin(), seen.end(), 0.0);
+  if (!(all_power > 0) || !(all_seen > 0)) return;
+  const auto share = [&](size_t i) { return kByPower * power[i] / all_power + (1 - kByPower) * seen[i] / all_seen; };
+  const double scale = first_triangle < lights.size() && power.back() > 0 ? power.back() / share(power.size() - 1) : 1;
+  for (size_t i = 0; i < first_triangle; ++i) weights[i] = share(i) * scale;
+}
+
 }  // namespace
 
-ShaderLights shader_lights(const Scene& scene, const Surfaces& surfaces, float diagonal) {
+double luminance(const Vec3& color) {
+  const Vec3d c = color.as<double>();
+  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
+
+ShaderLights shader_lights(const Scene& scene, const Surfaces& surfaces, float diagonal, const ShaderFrame* frame) {
   ShaderLights result;
   std::vector<double> weights;
   for (const SurfaceLight& light : surfaces.lights) {
     result.lights.push_back(shader_light(light));
     weights.push_back(weight_of(light, static_cast<double>(diagonal)));
   }
+  const size_t first_triangle = result.lights.size();
   for (size_t i = 0; i < surfaces.triangles.size(); ++i) {
     const SurfaceMaterial& material = surfaces.materials[scene.triangle_materials[i]];
     if (!material.emits() || material.emission_texture) continue;
@@ -105,6 +135,9 @@ ShaderLights shader_lights(const Scene& scene, const Surfaces& surfaces, float d
     result.lights.push_back(light);
     weights.push_back(luminance(light.color));
   }
+  // Where there is nothing to choose, or only triangles, nothing is measured.
+  if (frame != nullptr && first_triangle > 0 && result.lights.size() > 1)
+    weigh_by_survey(LightSurvey(scene, *frame), result.lights, first_triangle, weights);
   double total = 0;
   for (const double weight : weights) total += weight;
   set_thresholds(result.lights, weights, total);

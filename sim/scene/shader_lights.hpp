@@ -8,6 +8,8 @@
 
 namespace raypool {
 
+struct ShaderFrame;
+
 /// A RaypoolLight, word by word.
 struct ShaderLight {
   enum Kind : uint32_t { kPoint, kSpot, kDirectional, kLamp, kTriangle };
@@ -30,8 +32,13 @@ struct ShaderLights {
   float total_weight = 1;           ///< a triangle's probability is area times luminance over this
 };
 
+/// As raypool_luminance().
+double luminance(const Vec3& color);
+
 /// Those of the surfaces, then triangles with emission; without any the scene's own point light. `diagonal` is that of
-/// the scene's box.
-ShaderLights shader_lights(const Scene& scene, const Surfaces& surfaces, float diagonal);
+/// the scene's box. Of several, those are chosen more often that light what `frame` shows; without it, those of more
+/// power.
+ShaderLights shader_lights(const Scene& scene, const Surfaces& surfaces, float diagonal,
+                           const ShaderFrame* frame = nullptr);
 
 }  // namespace raypool

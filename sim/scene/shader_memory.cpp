@@ -75,7 +75,7 @@ class ShaderMemory {
         frame_(frame),
         file_(set.folder()),
         diagonal_(scene.bounds().diagonal()),
-        lights_(shader_lights(scene, surfaces, diagonal_)),
+        lights_(shader_lights(scene, surfaces, diagonal_, &frame)),
         values_(shader_values(scene, surfaces, lights_, frame, diagonal_)),
         end_(std::max(kShaderDataBegin, image.memory.size())) {}
 

@@ -572,6 +572,72 @@ TEST_F(ShaderMemoryTest, EachLightIsChosenWithItsProbability) {
   EXPECT_EQ(own.lights[0].probability, 1);
 }
 
+/// A shelf between a floor and a sun, seen from below the shelf, where a point light is.
+Scene shaded_floor() {
+  Scene scene;
+  for (const float height : {0.0f, 2.0f}) {
+    const auto first = static_cast<uint32_t>(scene.vertices.size());
+    const float wide = height > 0 ? 20 : 4;
+    for (const auto& [x, z] : {std::pair(-wide, wide), {wide, wide}, {wide, -wide}, {-wide, -wide}})
+      scene.vertices.push_back({x, height, z});
+    scene.triangles.push_back({first, first + 1, first + 2});
+    scene.triangles.push_back({first, first + 2, first + 3});
+    scene.triangle_materials.insert(scene.triangle_materials.end(), 2, 0);
+  }
+  scene.materials = {{"grey", {0.5f, 0.5f, 0.5f}, {}}};
+  scene.camera = {{0, 1, 3}, {0, -0.3f, -1}, {0, 1, 0}, 50};
+  Surfaces surfaces = surfaces_of(scene);
+  SurfaceLight sun, bulb;
+  sun.kind = SurfaceLight::Kind::Directional;
+  sun.direction = {0, -1, 0};
+  sun.color = {2, 2, 2};
+  bulb.position = {0, 1, 0};
+  bulb.color = {1, 1, 1};
+  surfaces.lights = {sun, bulb};
+  scene.surfaces = std::make_shared<const Surfaces>(std::move(surfaces));
+  return scene;
+}
+
+TEST_F(ShaderMemoryTest, LightsThatLightWhatIsSeenAreChosenMoreOften) {
+  const Scene scene = shaded_floor();
+  const float diagonal = scene.bounds().diagonal();
+  const ShaderFrame frame = frame_of(scene);
+  const auto sun = [&](const Surfaces& surfaces, const ShaderFrame* seen) {
+    const ShaderLights chosen = shader_lights(scene, surfaces, diagonal, seen);
+    EXPECT_NEAR(chosen.lights[0].probability + chosen.lights[1].probability, 1, 1e-6);
+    return chosen.lights[0].probability;
+  };
+  Surfaces surfaces = *scene.surfaces;
+  EXPECT_GT(sun(surfaces, nullptr), 0.9) << "by its power";
+  EXPECT_LT(sun(surfaces, &frame), 0.11) << "it is behind the shelf";
+  EXPECT_GT(sun(surfaces, &frame), 0.05) << "a survey may overlook something";
+  EXPECT_EQ(sun(surfaces, &frame), sun(surfaces, &frame)) << "the same each time";
+  surfaces.lights[0].direction = {0, 0.1f, -1};
+  surfaces.lights[0].direction = normalized(surfaces.lights[0].direction);
+  EXPECT_LT(sun(surfaces, &frame), 0.5) << "from below the floor's edge";
+  surfaces.lights[0].direction = {0, -1, 0};
+  surfaces.lights[1].position = {0, 9, 0};
+  EXPECT_NEAR(sun(surfaces, &frame), sun(surfaces, nullptr), 1e-6) << "none is seen: by power";
+}
+
+TEST_F(ShaderMemoryTest, TrianglesAreChosenWithTheProbabilityThatShadersCompute) {
+  Scene scene = shaded_floor();
+  Surfaces surfaces = *scene.surfaces;
+  // The shelf shines.
+  surfaces.materials.push_back(surfaces.materials[0]);
+  surfaces.materials[1].emission = {3, 3, 3};
+  scene.triangle_materials = {0, 0, 1, 1};
+  const ShaderFrame frame = frame_of(scene);
+  const ShaderLights chosen = shader_lights(scene, surfaces, scene.bounds().diagonal(), &frame);
+  ASSERT_EQ(chosen.lights.size(), 4u);
+  double sum = 0;
+  for (const ShaderLight& each : chosen.lights) sum += static_cast<double>(each.probability);
+  EXPECT_NEAR(sum, 1, 1e-6);
+  for (const size_t i : {2, 3}) EXPECT_NEAR(chosen.lights[i].probability, 800 * 3 / chosen.total_weight, 1e-5);
+  EXPECT_GT(chosen.lights[2].probability, 0.25) << "nothing else is so bright below it";
+  EXPECT_GT(chosen.lights[1].probability, 0.02) << "by its power the bulb had a part in three thousand";
+}
+
 TEST_F(ShaderMemoryTest, AlphaIsWithinItsSphere) {
   Scene scene = full_square();
   const auto values = [&] {
