@@ -128,7 +128,7 @@ enum class Feature : uint8_t {
   FusedMultiplyAdd,  ///< arithmetic.fma
   Triples,           ///< triples
   FusedTriples,      ///< both
-  Sharing,      ///< sharing
+  Sharing,           ///< sharing
 };
 
 // The instructions, a row each. Programs drawn at random depend on the order of the rows.

@@ -355,7 +355,8 @@ void Lowering::put_passed(uint32_t number, const Scalar& scalar) {
 
 /// An older thread of the path may have brought these words, from the first byte to the last, into this unit's cache.
 void Lowering::forget(const Scalar& base, uint32_t first, uint32_t last) {
-  for (uint32_t byte = first; byte < last; byte += kLineBytes) k_.invalidate(as_int(base), static_cast<int>(byte), where_);
+  for (uint32_t byte = first; byte < last; byte += kLineBytes)
+    k_.invalidate(as_int(base), static_cast<int>(byte), where_);
   k_.invalidate(as_int(base), static_cast<int>(last), where_);
 }
 

@@ -112,8 +112,7 @@ void Lowering::place_saved() {
   const uint64_t end = resources_.spilled() + resources_.saved_stride() * kSpillSlots;
   if (resources_.saved == 0 || end > UINT32_MAX) return;
   Scalar thread = of(k_.thread());
-  if (resources_.units > 1)
-    thread = binary(Opcode::Iadd, thread, scaled(of(k_.unit()), resources_.threads));
+  if (resources_.units > 1) thread = binary(Opcode::Iadd, thread, scaled(of(k_.unit()), resources_.threads));
   saved_ = reg(immediate(Opcode::Shl, thread, 2));
 }
 

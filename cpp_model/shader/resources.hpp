@@ -68,8 +68,8 @@ struct Resources {
   uint32_t units = 1;    ///< of the machine
   uint32_t threads = 1;  ///< of a unit: warps x lanes, a power of two
   /// Of sets that wait for their rays: words that a path's record takes. Records lie at saved + path_bytes()
-  /// (y path_pitch() + x); the values above come behind them. With several units a path goes on in any of them, and their
-  /// data caches do not see each other's stores.
+  /// (y path_pitch() + x); the values above come behind them. With several units a path goes on in any of them, and
+  /// their data caches do not see each other's stores.
   uint32_t path_words = 0;
   /// How many closest-hit shaders of a path may wait for their rays at a time, where they wait for each other: 1 or
   /// more.

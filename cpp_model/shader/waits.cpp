@@ -372,9 +372,8 @@ bool writes_memory(const Module& module) {
     const spv::StorageClass storage = module.type(module.type_of(line.operands.at(0))).storage;
     return storage == spv::StorageClass::StorageBuffer || storage == spv::StorageClass::PhysicalStorageBuffer;
   };
-  return std::any_of(module.blocks().begin(), module.blocks().end(), [&](const Block& block) {
-    return std::any_of(block.lines.begin(), block.lines.end(), is_store);
-  });
+  return std::any_of(module.blocks().begin(), module.blocks().end(),
+                     [&](const Block& block) { return std::any_of(block.lines.begin(), block.lines.end(), is_store); });
 }
 
 bool is_shadow(const Module& module, const Line& trace) {

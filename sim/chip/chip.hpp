@@ -50,7 +50,7 @@ struct ChipOptions {
   Memory* memory = nullptr;                               ///< program and materials
   uint32_t program_length = 0;                            ///< instructions, from address 0
   EnumArray<RayKernel, uint32_t, kRayKernels> entries{};  ///< PC of each
-  RecordLayout layout;  ///< of the intersections that the program imports; `configuration` has how many words
+  RecordLayout layout;   ///< of the intersections that the program imports; `configuration` has how many words
   bool shaders = false;  ///< kernels are of a shader set: they export what they like
   /// Words kTileWidthLog2, kTileMask, kWidth and kHeight are set by the chip, whatever they hold.
   std::array<uint32_t, kArguments> arguments{};

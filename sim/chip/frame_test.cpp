@@ -3,7 +3,6 @@
 
 #include "chip/test_real_frame.hpp"
 #include "machine/compute/functional_unit.hpp"
-#include "machine/compute/multiprocessor.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
@@ -19,9 +18,6 @@ class Frame : public testing::TestWithParam<FrameCase> {};
 TEST_P(Frame, IsThatOfTheNativeRenderer) {
   const FrameCase c = GetParam();
   test::RealFrame run(c.warps, c.lanes, c.width, c.height, c.depth, make_cornell(), false, c.intersection_words);
-  std::vector<std::unique_ptr<ComputeUnit>> units;
-  for (int i = 0; i < c.units; ++i) units.push_back(make_functional_unit(run.options.configuration, run.image.memory));
-
   NativeOptions native;
   native.width = c.width;
   native.height = c.height;
@@ -29,7 +25,7 @@ TEST_P(Frame, IsThatOfTheNativeRenderer) {
   NativeStatistics statistics;
   const FrameBuffer expected = render_native(run.scene, run.image, run.tracer, native, &statistics);
   const ChipResult result =
-      run.draw(make_multiprocessor(std::move(units), static_cast<int>(run.configuration.intersection_beats())));
+      run.draw(make_functional_units(run.options.configuration, run.image.memory, static_cast<uint32_t>(c.units)));
 
   EXPECT_TRUE(run.frame == expected);
   const auto same = [](const RayCounts::Kind& a, const RayCounts::Kind& b) {

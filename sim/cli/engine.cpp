@@ -17,7 +17,6 @@
 #include "machine/chip/chip_model.hpp"
 #include "machine/compute/functional_unit.hpp"
 #include "machine/compute/model.hpp"
-#include "machine/compute/multiprocessor.hpp"
 
 namespace raypool {
 
@@ -136,12 +135,8 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
   if (options.engine == Engine::Native || options.engine == Engine::Estimate || options.engine == Engine::Sampled)
     throw InputError(
         "engines native, estimate and sampled are for frames only: use functional, model, rtl or lockstep");
-  if (options.engine == Engine::Functional) {
-    std::vector<std::unique_ptr<ComputeUnit>> units;
-    for (uint32_t i = 0; i < static_cast<uint32_t>(options.units); ++i)
-      units.push_back(make_functional_unit(configuration, memory, i));
-    return make_multiprocessor(std::move(units), static_cast<int>(configuration.intersection_beats()));
-  }
+  if (options.engine == Engine::Functional)
+    return make_functional_units(configuration, memory, static_cast<uint32_t>(options.units));
   if (options.engine == Engine::Model)
     return make_model(configuration, memory, static_cast<uint32_t>(options.units)).device;
 

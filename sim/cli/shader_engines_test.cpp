@@ -229,8 +229,7 @@ TEST_F(ShaderEngines, DrawTheSamePictureWherePathsGoOnInAnotherUnit) {
   SimOptions without = options("cpp_model/shader/cases/reflections", "cornell", {"sharing=false"});
   agree(without);
   without.units = 2;
-  EXPECT_NE(refusal(without).find("draw with --set sharing=true, or --units 1"), std::string::npos)
-      << refusal(without);
+  EXPECT_NE(refusal(without).find("draw with --set sharing=true, or --units 1"), std::string::npos) << refusal(without);
 }
 
 TEST_F(ShaderEngines, DrawTheSamePictureInPathsOfManySamples) {

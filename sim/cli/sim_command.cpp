@@ -510,8 +510,7 @@ RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& s
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
   // A user of such shaders need not know what the chip must have for them; the machine's name shows it.
   if (record.waits && !is_chosen(options, "chip.miss_records")) set.emplace_back("chip.miss_records=true");
-  if (!options.shaders.empty() && options.units > 1 && !is_chosen(options, "sharing"))
-    set.emplace_back("sharing=true");
+  if (!options.shaders.empty() && options.units > 1 && !is_chosen(options, "sharing")) set.emplace_back("sharing=true");
   record.configuration = load_configuration(options.config, set);
   check_fields_in_use(record.configuration);
   record.width = size.width;

@@ -118,25 +118,31 @@ class Plan:
         self.check_shaders()
 
     def check_shaders(self):
-        """Each set once, on each machine and at each depth, by drawing a pixel."""
+        """Each set once, on each machine and at each depth, by drawing a pixel.
+
+        The machine gets what raypool adds to it, as chip.miss_records.
+        """
 
         def identity(planned):
             point = planned.point
             return (point["shaders"], point["config"], *planned.settings.items(),
                     *(text(point[field]) for field in ("depth", "units", "samples")))  # fmt: skip
 
-        def check(planned):
+        def machine_of(planned):
             point = planned.point
             if point["shaders"] == "" and point["samples"] == 1:
-                return
+                return planned.machine
             words = [f"--{field}={text(point[field])}" for field in ("depth", "units", "samples")]
             words += ["--shaders", point["shaders"]] if point["shaders"] else []
             with tempfile.TemporaryDirectory() as out:
                 raypool.ask("sim", *raypool.machine_words(point["config"], planned.settings), "--scene=cornell",
                             "--detail=0.01", "--engine=native", "--size=1x1", "--quiet", f"--out={out}",
                             *words)  # fmt: skip
+                with open(os.path.join(out, "report.json"), encoding="utf-8") as file:
+                    return json.load(file)["configuration"]
 
-        self.each_once("shader sets checked", identity, check)
+        for planned, machine in self.each_once("shader sets checked", identity, machine_of).items():
+            planned.machine = machine
 
     def check_scenes(self):
         def check(planned):

@@ -429,6 +429,17 @@ class Runs(SweepTest):
         self.run_sweep(document)
         self.assertEqual(len(self.finished() - before), 2)
 
+    def test_a_machine_has_what_raypool_adds_for_a_shader_set(self):
+        shaders = str(ROOT / "cpp_model" / "shader" / "cases" / "reflections")
+        base = {**TINY, "config": "4w4c", "engine": "model", "shaders": shaders}
+        self.run_sweep({"base": base, "product": {"units": [1, 2]}})
+        rows = self.rows()
+        reports = [json.loads((self.out / "points" / row["key"] / "report.json").read_text()) for row in rows]
+        machines = [report["configuration"] for report in reports]
+        self.assertEqual([machine["chip"]["miss_records"] for machine in machines], [True, True])
+        self.assertEqual([machine["sharing"] for machine in machines], [False, True])
+        self.assertEqual(len({row["picture"] for row in rows}), 1)
+
     def test_an_interrupt_while_machines_are_checked_does_not_wait_for_the_rest(self):
         self.write({"base": TINY, "product": {"chip.memory.latency": list(range(1, 1001))}})
         calls = self.folder / "machines"

@@ -36,8 +36,7 @@ Json bindings(raypool::Random& random) {
   return Json::array({
       {{"set", 0},
        {"binding", 2},
-       {"values",
-        {{"floats", floats(random, 16)}, {"ints", integers(random, 8)}, {"turn", floats(random, 9)}}}},
+       {"values", {{"floats", floats(random, 16)}, {"ints", integers(random, 8)}, {"turn", floats(random, 9)}}}},
       {{"set", 0}, {"binding", 3}, {"holds", {{"words", table}}}},
       {{"set", 0}, {"binding", 4}, {"holds", "textures"}},
       {{"set", 0}, {"binding", 5}, {"holds", {{"floats", floats(random, 32)}}}},

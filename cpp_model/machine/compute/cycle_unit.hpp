@@ -32,9 +32,9 @@
 
 namespace raypool {
 
-/// What units of a model load from and store to: a copy of the host's memory, taken at the first launch after reset() or
-/// set_argument(). Units see each other's stores at once; where it matters that hardware sees them later, programs have
-/// to wait (docs/machine/memory.md, section 3).
+/// What units of a model load from and store to: a copy of the host's memory, taken at the first launch after reset()
+/// or set_argument(). Units see each other's stores at once; in hardware they see them later, so programs that need
+/// them wait (docs/machine/memory.md, section 3).
 class ModelMemory {
  public:
   /// `host` must outlive it.

@@ -270,8 +270,8 @@ void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& 
   warp.predicates.write(instruction.rd, predicate);
 }
 
-// Loads, stores, and inval, which does nothing in a memory without caches. All masked lanes are checked before any of them is served;
-// misalignment is the first thing looked for.
+// Loads, stores, and inval, which does nothing in a memory without caches. All masked lanes are checked before any of
+// them is served; misalignment is the first thing looked for.
 template <int kLanes>
 bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes) {
   uint32_t* const addresses = result_.addresses.data();

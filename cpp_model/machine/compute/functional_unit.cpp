@@ -8,6 +8,7 @@
 
 #include "bits.hpp"
 #include "machine/compute/functional_core.hpp"
+#include "machine/compute/multiprocessor.hpp"
 
 namespace raypool {
 namespace {
@@ -198,8 +199,15 @@ class FunctionalUnit : public ComputeUnit {
 
 }  // namespace
 
-std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory, uint32_t unit) {
-  return std::make_unique<FunctionalUnit>(configuration, memory, unit);
+std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory) {
+  return std::make_unique<FunctionalUnit>(configuration, memory, 0);
+}
+
+std::unique_ptr<ComputeUnit> make_functional_units(const Configuration& configuration, Memory& memory, uint32_t units) {
+  std::vector<std::unique_ptr<ComputeUnit>> parts;
+  for (uint32_t unit = 0; unit < units; ++unit)
+    parts.push_back(std::make_unique<FunctionalUnit>(configuration, memory, unit));
+  return make_multiprocessor(std::move(parts), static_cast<int>(configuration.intersection_beats()));
 }
 
 std::unique_ptr<ComputeUnit> make_counting_functional_unit(const Configuration& configuration, Memory& memory,

@@ -19,9 +19,10 @@ class SpecialCensus;
 /// clock. One clock() runs every warp until it waits for a port, ends, or has executed some thousand instructions;
 /// after trace_on() at most one instruction a warp. At most one kernel ends in a clock. The program must lie in memory
 /// when the first kernel after reset() is launched. timed() is false; counters hold instructions, thread instructions
-/// and tasks issued of each ALU type; kBusyCycles counts clocks, all others read 0. `unit`: its number among several.
-std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory,
-                                                  uint32_t unit = 0);
+/// and tasks issued of each ALU type; kBusyCycles counts clocks, all others read 0.
+std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory);
+/// 1, 2 or 4 of them as one device.
+std::unique_ptr<ComputeUnit> make_functional_units(const Configuration& configuration, Memory& memory, uint32_t units);
 /// The same, but counts infinities and NaNs in `census`, which must outlive it, and takes longer.
 std::unique_ptr<ComputeUnit> make_counting_functional_unit(const Configuration& configuration, Memory& memory,
                                                            SpecialCensus& census);

@@ -31,7 +31,7 @@ class MemAlu {
   };
   /// A load, store or inval of a warp, from its issue to its end. Quadwords stand in the order of their lowest lanes.
   struct Task {
-    bool store = false;                 ///< or inval
+    bool store = false;  ///< or inval
     bool inval = false;
     FaultCode fault = FaultCode::None;  ///< raised when the first quadword is looked up
     uint32_t count = 0;                 ///< quadwords
