@@ -290,8 +290,8 @@ TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
   EXPECT_EQ(
       error_of(R"({"threads": 8})"),
       "unknown key threads; known here: name, warps, lanes, stack_depth, triples, kernel_overlap, wide_ray_memory, "
-      "slow_lanes, intersection_words, registers, predicates, arguments, pc_bits, counter_bits, instruction_cache, "
-      "data_cache, arithmetic, alus, chip, $schema");
+      "slow_lanes, sharing, intersection_words, registers, predicates, arguments, pc_bits, counter_bits, "
+      "instruction_cache, data_cache, arithmetic, alus, chip, $schema");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
 }
 
@@ -469,9 +469,12 @@ void read_parameters(const std::string& path, std::vector<std::pair<std::string,
 }
 
 TEST(Configuration, VerilogParametersAreThoseOfTheComputeUnitInOrder) {
-  // The port list is the contract: parameters with the default configuration's values, but for derived ones.
+  // The port list is the contract: parameters with the default configuration's values, but for derived ones, and for
+  // the number that a unit has among several.
   std::vector<std::pair<std::string, int>> declared;
   read_parameters("rtl/compute/rp_compute_unit.v", declared);
+  ASSERT_EQ(declared.back(), std::pair(std::string("UNIT"), 0));
+  declared.pop_back();
   const auto parameters = verilog_parameters(Configuration{});
   EXPECT_EQ(parameters, declared);
 }
