@@ -63,7 +63,7 @@ struct Op {
   /// Lanes outside the guard need nothing of rd's old value, so that whatever rd's register held before is dead. Of a
   /// Spill::Store: the same of the ray word.
   bool fresh = false;
-  /// Of a load that nobody needs the value of: when it is done, all that the thread has stored is in the memory.
+  /// Of a load whose value no op reads: when it is done, all that the thread has stored is in the memory.
   bool fence = false;
   Spill spill = Spill::None;
   int slot = kNothing;  ///< of spill memory, if the op stores to it or reloads from it

@@ -90,7 +90,7 @@ def put_in(source, folder, options):
     for link in ("cpp_model", "sim", "scripts"):
         if not (folder / link).is_symlink():
             (folder / link).symlink_to(ROOT / link)
-    told = [{key: fault[key] for key in ("number", "file", "mistake")} for fault in faults]
+    told = [{key: fault[key] for key in ("number", "file", "bug")} for fault in faults]
     lines = ",\n".join("  " + json.dumps(fault) for fault in told)
     (folder / "faults.json").write_text(f'{{"judged": "{judged}", "faults": [\n{lines}\n]}}\n')
     print(f"{len(faults)} faults in {len({fault['file'] for fault in faults})} modules", flush=True)

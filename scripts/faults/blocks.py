@@ -196,7 +196,7 @@ def put_in(texts, each, seed, names):
             raise Refused(f"there is no rtl/{name}")
         edits = []
         for begin, end, wrong, what in mutants_of(texts[name], each, f"{seed} {name}"):
-            faults.append({"number": len(faults) + 1, "file": name, "mistake": what})
+            faults.append({"number": len(faults) + 1, "file": name, "bug": what})
             edits.append((begin, end, len(faults), wrong))
         texts[name] = QUIET + with_selector(name, with_faults(texts[name], edits))
     return faults

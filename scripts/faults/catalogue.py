@@ -27,7 +27,7 @@ def places(piece, text):
 
 def place(fault, text):
     """Where in the file's text `right` stands: begin and end."""
-    name = f"fault {fault['number']} ({fault['file']}: {fault['mistake']})"
+    name = f"fault {fault['number']} ({fault['file']}: {fault['bug']})"
     around = fault.get("at", fault["right"])
     begin, end = 0, len(text)
     for what, piece, where in (("at", around, f"in rtl/{fault['file']}"), ("right", fault["right"], "in its `at`")):

@@ -59,7 +59,7 @@ def fault_of(number, line):
         what += f", by bit {option_of(line, 'ctrlbit')}"
     if option_of(line, "wire"):
         what += f", wire {option_of(line, 'wire')}[{option_of(line, 'wirebit')}]"
-    return {"number": number, "file": file or "(made by Yosys)", "mistake": what}
+    return {"number": number, "file": file or "(made by Yosys)", "bug": what}
 
 
 def with_number(netlist, parameters, declared):

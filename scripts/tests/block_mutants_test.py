@@ -117,9 +117,9 @@ class Mutants(unittest.TestCase):
                 r"-src rtl/compute/rp_warp.v:55.19-57.70")
         self.assertEqual(mutants.fault_of(7, line), {
             "number": 7, "file": "rp_pc_stack.v",
-            "mistake": r"cnot1, A[2] of gen_warp[0].warp.eq at x.vh:13, by bit 5, wire \warp.q[8]"})  # fmt: skip
+            "bug": r"cnot1, A[2] of gen_warp[0].warp.eq at x.vh:13, by bit 5, wire \warp.q[8]"})  # fmt: skip
         made = mutants.fault_of(1, "mutate -mode inv -cell $auto$opt_reduce.cc:134:opt_pmux$99 -port Y -portbit 0")
-        self.assertEqual((made["file"], made["mistake"]), ("(made by Yosys)", "inv, Y[0] of opt_pmux"))
+        self.assertEqual((made["file"], made["bug"]), ("(made by Yosys)", "inv, Y[0] of opt_pmux"))
 
 
 if __name__ == "__main__":

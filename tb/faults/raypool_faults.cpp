@@ -87,7 +87,7 @@ Faults read_faults(const Options& options, const Source& source, const std::stri
   faults.judged = list.at("judged");
   size_t number = 0;
   for (const Json& entry : list.at("faults")) {
-    Fault fault{entry.at("number"), entry.at("file"), entry.at("mistake")};
+    Fault fault{entry.at("number"), entry.at("file"), entry.at("bug")};
     const bool in_units = hierarchy.contains("multiprocessor", module_of(fault.file));
     if (!source.beside_units && !in_units) continue;
     if (!source.in_units && in_units) continue;
