@@ -45,10 +45,8 @@ class Piece {
 
   /// Which ops must come before each.
   void find_order() {
-    std::map<int, size_t> register_written, predicate_written;
-    std::map<int, std::vector<size_t>> register_read, predicate_read;
-    std::map<int, size_t> word_written;
-    std::map<int, std::vector<size_t>> word_read;
+    std::map<int, size_t> register_written, predicate_written, word_written;
+    std::map<int, std::vector<size_t>> register_read, predicate_read, word_read;
     std::vector<size_t> words_since_swap, loads;
     int last_store = kNothing, last_swap = kNothing, last_fence = kNothing;
     const auto behind = [&](size_t op, int earlier) {
