@@ -26,6 +26,16 @@ std::vector<int> find_single_definitions(const Function& function, bool predicat
   return definitions;
 }
 
+Op clearing(int predicate, const Location& where) {
+  Op op;
+  op.info = &instruction(Opcode::Pxor);
+  op.px = op.rb = 0;
+  op.rd = predicate;
+  op.fresh = true;
+  op.where = where;
+  return op;
+}
+
 std::optional<Opcode> exchanged(Opcode opcode) {
   switch (opcode) {
     case Opcode::Iadd:

@@ -13,6 +13,9 @@ namespace raypool::kernel {
 /// For each virtual register (or predicate) its only defining op, kNothing if there are several or none.
 std::vector<int> find_single_definitions(const Function& function, bool predicates);
 
+/// An op that makes a predicate 0 in all lanes.
+Op clearing(int predicate, const Location& where);
+
 /// The operation that gives the same result with ra and rb exchanged, if there is one.
 std::optional<Opcode> exchanged(Opcode opcode);
 

@@ -7,6 +7,7 @@
 #include "kernel/compiler.hpp"
 #include "kernel/liveness.hpp"
 #include "kernel/needed_places.hpp"
+#include "kernel/passes.hpp"
 
 namespace raypool::kernel {
 namespace {
@@ -545,9 +546,31 @@ void remove_unneeded_stores(Function& function) {
   }
 }
 
+/// A warp starts with all predicates 0. A register that takes the place of one that is read before it is written, or
+/// where its writes are jumped over, would hold what an older kernel has left.
+void define_at_start(Function& function) {
+  const Effects first = effects(function.ops.front());
+  NumberSet read = find_liveness(function).predicates_after.front();
+  if (first.predicate_defined != kNothing) read.erase(first.predicate_defined);
+  for (const int used : first.predicate_uses)
+    if (used != kNothing) read.insert(used);
+  std::vector<Op> cleared;
+  read.for_each([&](int number) {
+    if (number != 0) cleared.push_back(clearing(number, function.ops.front().where));
+  });
+  // What begins before the offset is there finds no place in memory.
+  auto place = function.ops.begin();
+  if (function.spill_memory) {
+    const auto is_offset = [&](const Op& op) { return effects(op).register_defined == function.spill_memory->offset; };
+    place = std::next(std::find_if(place, function.ops.end(), is_offset));
+  }
+  function.ops.insert(place, cleared.begin(), cleared.end());
+}
+
 }  // namespace
 
 bool spill(Function& function, SpillCounts& counts) {
+  if (!has_places(function, true)) define_at_start(function);
   if (!Spiller(function, true, counts).run()) return false;
   remove_dead(function);
   // What has become of conditions are values like others.

@@ -309,6 +309,35 @@ TEST(Spill, ConditionsBeyondFifteenKeepTheirBits) {
   }
 }
 
+/// As where what defines it is in code that no lane comes to.
+TEST(Spill, AConditionThatNothingDefinesIsFalse) {
+  constexpr int kConditions = 20;
+  int never = kNothing;
+  Recorder recorder("k");
+  RecordedKernel k(recorder);
+  k.ray_in();
+  never = recorder.declare_predicate();
+  std::vector<RecordedKernel::Bool> conditions;
+  for (int i = 0; i < kConditions; ++i) conditions.push_back(k.int_word(i) == -1);
+  for (int i = 0; i < kConditions; ++i)
+    k.if_(conditions[static_cast<size_t>(i)], [&] { k.store(k.thread() << 2, 0, k.thread()); });
+  recorder.begin_if({never, false, {}});
+  k.store(k.thread() << 2, 64, k.thread() + 1);
+  recorder.end_if();
+  Function function = recorder.finish();
+  const auto defines = [&](const Op& op) {
+    return op.kind == Op::Kind::Instruction && writes_predicate(*op.info) && op.rd == never;
+  };
+  function.ops.erase(std::find_if(function.ops.begin(), function.ops.end(), defines));
+  Program program;
+  EXPECT_GT(compile(function, program).spilled.predicates, 0);
+  test::Interpreter machine;
+  machine.memory = Memory(kBytes);
+  machine.run(program, program.entries.at("k"));
+  for (uint32_t lane = 0; lane < test::Interpreter::kLanes; ++lane)
+    EXPECT_EQ(machine.memory.load(4 * lane + 64), 0u) << lane << "\n" << listing(program);
+}
+
 TEST(Spill, ConstantsAndArgumentsAreComputedAgain) {
   const auto body = [](auto& k) {
     using KFloat = typename std::decay_t<decltype(k)>::Float;

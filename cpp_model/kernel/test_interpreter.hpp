@@ -70,7 +70,9 @@ class Interpreter {
   uint32_t unit = 0;             ///< that runs the warp
 
   void run(const Program& program, uint32_t entry) {
-    for (auto& lane : registers_) lane.fill(0xbad0bad0u);
+    // Both above zero and below, as integers.
+    for (size_t lane = 0; lane < registers_.size(); ++lane)
+      registers_[lane].fill(lane % 2 == 0 ? 0xbad0bad0u : 0x0bad0badu);
     predicates_.fill(0);
     predicates_[0] = kAll;
     struct Entry {

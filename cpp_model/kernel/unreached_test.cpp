@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <vector>
 
 #include "kernel/compiler.hpp"
 
@@ -79,6 +80,53 @@ TEST(Unreached, IsALoopThatNoLaneEnters) {
   });
   EXPECT_EQ(count(function, Opcode::St), 1);
   EXPECT_EQ(count(function, Opcode::Loop), 0);
+}
+
+bool reads(const Op& op, int predicate) {
+  const Effects effect = effects(op);
+  return std::find(std::begin(effect.predicate_uses), std::end(effect.predicate_uses), predicate) !=
+         std::end(effect.predicate_uses);
+}
+
+TEST(Unreached, LeavesNothingThatReadsAPredicateOfNoLane) {
+  int never = kNothing;
+  const Function function = left_of([&](Recorder& recorder, RecordedKernel& kernel, int no_lane) {
+    never = no_lane;
+    const auto some = kernel.thread() == 3;
+    const int joined = recorder.emit_predicates(Opcode::Por, no_lane, some.number(), {});
+    const int less = recorder.emit_predicates(Opcode::Pandn, some.number(), no_lane, {});
+    const int either = recorder.emit_predicates(Opcode::Pxor, joined, no_lane, {});
+    const int none = recorder.emit_predicates(Opcode::Pand, less, no_lane, {});
+    for (const int lanes : {joined, less, either}) {
+      recorder.begin_if({lanes, false, {}});
+      store_some(kernel, 2);
+      recorder.end_if();
+    }
+    recorder.begin_if({none, true, {}});
+    store_some(kernel, 1);
+    recorder.emit_select({no_lane, false, {}}, kernel.thread().number(), kernel.block().number(), {});
+    recorder.end_if();
+  });
+  EXPECT_EQ(count(function, Opcode::St), 7);
+  for (const Op& op : function.ops) EXPECT_FALSE(op.kind == Op::Kind::Instruction && reads(op, never));
+  for (const Opcode gone : {Opcode::Por, Opcode::Pxor, Opcode::Sel}) EXPECT_EQ(count(function, gone), 0);
+}
+
+TEST(Unreached, KeepsThatAPredicateIsCleared) {
+  int cleared = kNothing;
+  const Function function = left_of([&](Recorder& recorder, RecordedKernel& kernel, int no_lane) {
+    const auto some = kernel.thread() == 3;
+    cleared = recorder.materialise({some.number(), false, {}});
+    recorder.begin_if({cleared, false, {}});
+    store_some(kernel, 1);
+    recorder.end_if();
+    recorder.assign_predicate(cleared, no_lane, false);
+  });
+  std::vector<Opcode> makes;
+  for (const Op& op : function.ops)
+    if (op.kind == Op::Kind::Instruction && writes_predicate(*op.info) && op.rd == cleared)
+      makes.push_back(op.info->opcode);
+  EXPECT_EQ(makes, (std::vector<Opcode>{Opcode::Pand, Opcode::Pxor}));
 }
 
 TEST(Unreached, KeepsWhatChangesTheSlicesOfAWarp) {

@@ -1,10 +1,11 @@
 #!/bin/bash
 # Random shader sets that wait for their rays: native, functional, model and lockstep draw the same picture of each, and
 # lockstep finds no difference.
-#   scripts/tests/random_shaders.sh RAYPOOL RAYPOOL_RANDOM_SET FIRST COUNT
+#   scripts/tests/random_shaders.sh RAYPOOL RAYPOOL_RANDOM_SET SEED...
 # On one compute unit, the Verilated one of tb/mutants/2w2c.json beside RAYPOOL.
 set -eu -o pipefail
-raypool=$(realpath "$1") generator=$(realpath "$2") first=$3 count=$4
+raypool=$(realpath "$1") generator=$(realpath "$2")
+seeds=("${@:3}")
 cd "$(dirname "$0")/../.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -19,7 +20,7 @@ draw() {
 }
 
 pictures=()
-for ((seed = first; seed < first + count; ++seed)); do
+for seed in "${seeds[@]}"; do
   rm -rf "$folder/set"
   "$generator" "$seed" "$folder/set"
   for engine in native functional model lockstep; do draw "$seed" $engine; done
@@ -27,5 +28,5 @@ for ((seed = first; seed < first + count; ++seed)); do
   grep -q '"differences": 0' "$folder/lockstep/report.json" || { echo "FAILED: seed $seed: differences"; exit 1; }
 done
 several=$(printf '%s\n' "${pictures[@]}" | sort -u | wc -l)
-[ $((2 * several)) -ge "$count" ] || { echo "FAILED: $count sets draw only $several pictures"; exit 1; }
-echo "$count sets from seed $first on: $several pictures, each the same with native, functional, model and lockstep"
+[ $((2 * several)) -ge ${#seeds[@]} ] || { echo "FAILED: ${#seeds[@]} sets draw only $several pictures"; exit 1; }
+echo "${#seeds[@]} sets: $several pictures, each the same with native, functional, model and lockstep"
