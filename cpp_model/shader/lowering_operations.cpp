@@ -45,6 +45,9 @@ void Lowering::operation(const Line& line) {
       set(line, {Scalar::constant(pointer.size < offset ? 0 : (pointer.size - offset) / stride)});
       return;
     }
+    case spv::Op::OpReadClockKHR:
+      // A picture must not depend on what draws it, so time passes from sample to sample.
+      return set(line, {of(k_.int_argument(argument::kSample)), Scalar::constant(0)});
     case spv::Op::OpFunctionCall:
       fail(fmt::format("function '{}' calls itself, and there is no stack for it: write it as a loop",
                        module_.name_of(line.operands.at(0))));

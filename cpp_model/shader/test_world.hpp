@@ -73,6 +73,7 @@ class World {
     }
     arguments[argument::kTileWidthLog2] = 3;
     arguments[argument::kTileMask] = 7;
+    arguments[argument::kSample] = 3;
     // Textures, and material records with the address of something in their fourth word.
     textures_ = take(kElements * kTextureBytes);
     for (uint32_t i = 0; i < kElements; ++i) {

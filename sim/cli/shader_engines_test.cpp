@@ -239,6 +239,20 @@ TEST_F(ShaderEngines, DrawTheSamePictureInPathsOfManySamples) {
   agree(deep, {"native", "functional", "model"});
 }
 
+TEST_F(ShaderEngines, AClockCountsSamples) {
+  SimOptions clock = options("cpp_model/shader/cases/clock", "cornell");
+  clock.samples = 3;
+  equal_pictures(clock, {"native", "functional", "model"});
+  const fs::path sum = folder_ / "sum";
+  fs::create_directories(sum);
+  const char* begin = "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"raypool.glsl\"\n";
+  std::ofstream(sum / "a.rgen") << begin
+                                << "void main() { imageStore(raypool_picture, ivec2(gl_LaunchIDEXT.xy), vec4(0.75, "
+                                   "0.75, 3 * (gl_LaunchIDEXT.x & 1), 1)); }\n";
+  std::ofstream(sum / "a.rchit") << begin << "void main() {}\n";
+  EXPECT_TRUE(drawn(clock, "native") == drawn(options(sum.string(), "cornell"), "native"));
+}
+
 TEST_F(ShaderEngines, MachinesWithoutAnInstructionAreRefusedByItsNameAndItsKernels) {
   const std::vector<std::array<std::string, 4>> missing = {{"path", "int", "imul", "cast_eye"},
                                                            {"ao", "int", "sel", "cast_secondary"},
