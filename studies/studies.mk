@@ -27,14 +27,14 @@ intervals: setup-sim program ## do the intervals of ENGINE=sampled have the cove
 pareto: checked-pareto setup-sim setup-synth program ## area against picture error: arithmetic modes and fits of a frame
 	@$(PYTHON) studies/pareto.py $(call options,$(FRAME) MACHINES JOBS OUT) $(ARGS)
 
-#: variables of make fit: those of the frame
+#: variables of make fit: those of the frame, and SHADERS
 #:   SLOWER=N%                     cycles that the whole may take more         1%
 #:   AREA=1                        what each change saves in area
 #:   POWER=1                       area, and timing and power before and after
 #:   OUT=FILE                      for the configuration
 fit: checked-fit setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configuration with only that
 	@mkdir -p $(BUILD)/out
-	@$(RAYPOOL) fit $(call options,$(FRAME) SLOWER OUT) --json $(BUILD)/out/fit.json $(ARGS)
+	@$(RAYPOOL) fit $(call options,$(FRAME) SHADERS SLOWER OUT) --json $(BUILD)/out/fit.json $(ARGS)
 	@$(if $(FIT_SETUP),$(SYNTH) fit $(BUILD)/out/fit.json $(POWER_FLAG))
 
 #: variables of make sweep

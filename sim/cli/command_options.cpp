@@ -43,6 +43,14 @@ void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string
   add("--detail", detail, "N", "triangles of a built-in scene, 0.01 to 16 times as designed")->capture_default_str();
 }
 
+void add_shaders(CLI::App& app, std::string& shaders) {
+  app.add_option("--shaders", shaders,
+                 "a folder with GLSL shaders (.rgen, .rchit, .rmiss, .rahit) that draw in place of the built-in "
+                 "kernels")
+      ->type_name("FOLDER")
+      ->group(option_group::kScene);
+}
+
 void add_depth(CLI::App& app, int& depth) {
   app.add_option("--depth", depth, "1: eye and shadow rays only; up to 254: with reflections")
       ->group(option_group::kScene)

@@ -31,12 +31,7 @@ void DrawingCommands::add_sim_command() {
 }
 
 void DrawingCommands::add_shader_options(CLI::App& sim_app) {
-  sim_app
-      .add_option("--shaders", sim_.shaders,
-                  "a folder with GLSL shaders (.rgen, .rchit, .rmiss, .rahit) that draw in place of the built-in "
-                  "kernels")
-      ->type_name("FOLDER")
-      ->group(option_group::kScene);
+  add_shaders(sim_app, sim_.shaders);
   sim_app
       .add_option("--samples", sim_.samples,
                   "with --shaders: frames that add up to the picture, each with its number; the shaders weigh them")

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/folders.hpp"
+#include "config/settings.hpp"
 #include "files/input_file.hpp"
 #include "isa/input_error.hpp"
 #include "kernel/ray_program.hpp"
@@ -108,7 +109,16 @@ void check_shaders(const RunRecord& record) {
   }
 }
 
-MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSet& set, const Scene& scene,
+void add_settings_for(const shader::ShaderSet& set, int units, std::vector<std::string>& settings) {
+  const std::vector<std::string> chosen = paths_set(settings);
+  const auto add = [&](const std::string& field) {
+    if (std::find(chosen.begin(), chosen.end(), field) == chosen.end()) settings.push_back(field + "=true");
+  };
+  if (set.waits()) add("chip.miss_records");
+  if (units > 1) add("sharing");
+}
+
+MemoryImage build_shader_image(const ShaderSource& source, const shader::ShaderSet& set, const Scene& scene,
                                RunRecord& record) {
   Program room;
   room.code.assign(kProgramRoom, 0);
@@ -121,7 +131,7 @@ MemoryImage build_shader_image(const SimOptions& options, const shader::ShaderSe
   frame.camera = camera_numbers(scene, frame.width, frame.height);
   frame.offset = static_cast<float>(
       offset_share(longest_direction(frame.camera, frame.width, frame.height), record.configuration.significand));
-  shader::Resources resources = options.shader_source.memory(image, scene, set, frame);
+  shader::Resources resources = source.memory(image, scene, set, frame);
   resources.units = record.units;
   resources.threads = record.configuration.contents();
   if (record.waits) {

@@ -508,9 +508,7 @@ RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& s
   }
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
-  // A user of such shaders need not know what the chip must have for them; the machine's name shows it.
-  if (record.waits && !is_chosen(options, "chip.miss_records")) set.emplace_back("chip.miss_records=true");
-  if (!options.shaders.empty() && options.units > 1 && !is_chosen(options, "sharing")) set.emplace_back("sharing=true");
+  if (shaders != nullptr) add_settings_for(*shaders, options.units, set);
   record.configuration = load_configuration(options.config, set);
   check_fields_in_use(record.configuration);
   record.width = size.width;
@@ -530,7 +528,7 @@ MemoryImage build_image(const SimOptions& options, RunRecord& record, const Scen
     return build_memory(ray_program(record).program, scene);
   }
   check_shaders(record);
-  MemoryImage image = build_shader_image(options, *shaders, scene, record);
+  MemoryImage image = build_shader_image(options.shader_source, *shaders, scene, record);
   check_fits(record, scene);
   return image;
 }

@@ -83,7 +83,7 @@ void add_referee_options(CLI::App& app, RefereeCommandOptions& options);
 /// `others`: contenders besides our own; may be empty.
 int referee_command(const RefereeCommandOptions& options, const std::function<referee::Contenders()>& others = {});
 
-/// `raypool fit`: the frame is that of `raypool sim`.
+/// `raypool fit`: the frame is that of `raypool sim`, with one sample of a pixel.
 struct FitOptions {
   std::string scene = "room";
   double detail = 1;
@@ -95,6 +95,7 @@ struct FitOptions {
   std::string config = "8w8c";  ///< what there is to be less of
   std::vector<std::string> set;
   std::string traverser;
+  std::string shaders;        ///< the shader set that draws; empty: the built-in kernels
   std::string slower = "1%";  ///< cycles that the whole may take more
   std::string out;            ///< the configuration's file; empty: out/fit/<its name>.json beside the executable
   std::string json;           ///< file with what was found; empty: none

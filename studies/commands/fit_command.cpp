@@ -7,7 +7,10 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <stdexcept>
+#include <tuple>
 
 #include "chip/board.hpp"
 #include "cli/engine.hpp"
@@ -16,6 +19,7 @@
 #include "cli/frame.hpp"
 #include "cli/image_size.hpp"
 #include "cli/progress.hpp"
+#include "cli/shaders.hpp"
 #include "cli/version.hpp"
 #include "commands/commands.hpp"
 #include "commands/special_values.hpp"
@@ -52,11 +56,50 @@ std::string fitted_name(const std::string& base, const std::string& scene) {
   return base.substr(0, kLongestName - std::min(kLongestName, end.size())) + end.substr(0, kLongestName);
 }
 
+/// What draws the frame: the built-in kernels, or a shader set, compiled once for each kind of machine.
+class Programs {
+ public:
+  /// `set`: null for the built-in kernels.
+  Programs(const Scene& scene, std::shared_ptr<const shader::ShaderSet> set) : scene_(scene), set_(std::move(set)) {}
+
+  /// The record's memory; the record gets the set's kernels. Throws InputError when its machine lacks what they need.
+  MemoryImage image(RunRecord& record) {
+    if (!set_) return build_memory(ray_program(record).program, scene_);
+    const Made& made = of(record);
+    record.kernels = made.kernels;
+    return made.image;
+  }
+  const RayProgram& program(RunRecord record) {
+    if (set_) record.kernels = of(record).kernels;
+    return ray_program(record);
+  }
+
+ private:
+  struct Made {
+    std::shared_ptr<const RayProgram> kernels;
+    MemoryImage image;
+  };
+  /// By all of a machine that the kernels depend on.
+  const Made& of(RunRecord& record) {
+    const KernelTarget target(record.configuration);
+    const std::tuple key = {target.fma, target.triples, target.culling, target.compact,
+                            record.configuration.contents()};
+    const auto found = made_.find(key);
+    if (found != made_.end()) return found->second;
+    MemoryImage image = build_shader_image(SimOptions().shader_source, *set_, scene_, record);
+    return made_.emplace(key, Made{record.kernels, std::move(image)}).first->second;
+  }
+
+  const Scene& scene_;
+  std::shared_ptr<const shader::ShaderSet> set_;
+  std::map<std::tuple<bool, bool, bool, bool, uint32_t>, Made> made_;
+};
+
 /// One frame, drawn on one machine after another. Each picture must be that of the kernels as C++.
 class FrameRuns {
  public:
-  FrameRuns(const FitOptions& options, RunRecord record, const Scene& scene)
-      : options_(options), record_(std::move(record)), scene_(scene), picture_(draw_natively()) {}
+  FrameRuns(const FitOptions& options, RunRecord record, const Scene& scene, Programs& programs)
+      : options_(options), record_(std::move(record)), scene_(scene), programs_(programs), picture_(draw_natively()) {}
 
   /// Throws std::runtime_error when the picture is another one, and what run_board() throws.
   ChipResult draw(const Configuration& machine, const std::string& what);
@@ -81,13 +124,14 @@ class FrameRuns {
   const FitOptions& options_;
   RunRecord record_;
   const Scene& scene_;
+  Programs& programs_;
   std::atomic<uint32_t> depth_reached_{0};
   int runs_ = 0;
   FrameBuffer picture_;
 };
 
 FrameBuffer FrameRuns::draw_natively() {
-  const MemoryImage image = build_memory(ray_kernel_program(KernelTarget(record_.configuration)), scene_);
+  const MemoryImage image = programs_.image(record_);
   const Tracer tracer = tracer_of(record_, scene_, image);
   NativeOptions native = native_options(record_);
   native.trace = [&](const Ray& ray, Intersection& hit) {
@@ -101,17 +145,16 @@ FrameBuffer FrameRuns::draw_natively() {
 
 ChipResult FrameRuns::draw(const Configuration& machine, const std::string& what) {
   record_.configuration = machine;
-  MemoryImage image = build_memory(ray_kernel_program(KernelTarget(machine)), scene_);
+  MemoryImage image = programs_.image(record_);
   return draw_on(make_unit({Engine::Model, machine, "", false, record_.units, 0}, image.memory), image, what);
 }
 
 SpecialValues FrameRuns::specials(const Configuration& machine) {
   record_.configuration = machine;
-  const Program& program = ray_kernel_program(KernelTarget(machine));
-  MemoryImage image = build_memory(program, scene_);
+  MemoryImage image = programs_.image(record_);
   SpecialCensus census(arith::mode_of(machine));
   draw_on(make_counting_functional_unit(machine, image.memory, census), image, "its infinities and NaNs");
-  return special_values(census, program);
+  return special_values(census, ray_program(record_).program);
 }
 
 ChipResult FrameRuns::draw_on(std::unique_ptr<ComputeUnit> device, MemoryImage& image, const std::string& what) {
@@ -157,15 +200,17 @@ struct Found {
 };
 
 std::string depth_text(const Found& found) {
+  if (found.record.waits) return "the shaders' own";
   if (!found.record.reflections) return "no reflections";
   return fmt::format("rays reach {}", found.depth_reached);
 }
 
 std::string table_of(const Found& found) {
   const RunRecord& record = found.record;
-  std::string text = fmt::format("{}, {} triangles, {}x{}, depth {} ({}): what it needs of {}, {} compute unit{}\n",
+  std::string text = fmt::format("{}, {} triangles, {}x{}, depth {} ({}){}: what it needs of {}, {} compute unit{}\n",
                                  record.scene, record.triangles, record.width, record.height, record.depth,
-                                 depth_text(found), found.fit.base.name, record.units, record.units == 1 ? "" : "s");
+                                 depth_text(found), record.shaders.empty() ? "" : ", shaders " + record.shaders,
+                                 found.fit.base.name, record.units, record.units == 1 ? "" : "s");
   std::vector<std::string> launched, never;
   for (size_t i = 0; i < kRayKernels; ++i) {
     const uint64_t threads = found.frame.drawn.kernels[i].threads;
@@ -199,6 +244,7 @@ std::string json_of(const Found& found, const std::string& file) {
   json["command"] = record.command;
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
   json["size"] = {{"width", record.width}, {"height", record.height}};
+  if (!record.shaders.empty()) json["shaders"] = record.shaders;
   json["depth"] = record.depth;
   json["depth_reached"] = found.depth_reached;
   json["reflections"] = record.reflections;
@@ -229,11 +275,16 @@ std::string json_of(const Found& found, const std::string& file) {
 /// Before all the work.
 void check_writable(const fs::path& path) { OutputFiles().begin(path); }
 
-RunRecord record_of(const FitOptions& options, const Scene& scene) {
+RunRecord record_of(const FitOptions& options, const Scene& scene, const shader::ShaderSet* shaders) {
   const ImageSize size = parse_image_size(options.size);
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
   RunRecord record;
+  if (shaders != nullptr) {
+    add_settings_for(*shaders, options.units, set);
+    record.shaders = options.shaders;
+    record.waits = shaders->waits();
+  }
   record.command = options.command;
   record.configuration = load_configuration(options.config, set);
   refuse_unused_settings(record.configuration);
@@ -244,7 +295,7 @@ RunRecord record_of(const FitOptions& options, const Scene& scene) {
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();
-  record.reflections = record.depth > 1 && scene.reflects();
+  record.reflections = record.chip_depth() > 1 && (shaders != nullptr || scene.reflects());
   return record;
 }
 
@@ -253,11 +304,19 @@ RunRecord record_of(const FitOptions& options, const Scene& scene) {
 int fit_command(const FitOptions& options) {
   const double slower = parse_slower(options.slower);
   check_depth_and_units(options.depth, options.units);
-  const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
+  std::shared_ptr<const shader::ShaderSet> shaders;
+  if (!options.shaders.empty()) shaders = SimOptions().shader_source.load(options.shaders);
+  const Scene scene =
+      load_scene_and_warn(options.scene, options.detail, options.view, options.look, shaders != nullptr);
   Found found;
   found.slower = slower;
-  found.record = record_of(options, scene);
+  found.record = record_of(options, scene, shaders.get());
   const Configuration& base = found.record.configuration;
+  Programs programs(scene, shaders);
+  if (shaders) {
+    check_shaders(found.record);
+    programs.image(found.record);
+  }
   check_fits(found.record, scene);
   const std::string name = fitted_name(base.name, options.scene);
   const fs::path out = options.out.empty() ? results_folder() / "fit" / (name + ".json") : fs::path(options.out);
@@ -265,10 +324,17 @@ int fit_command(const FitOptions& options) {
   check_writable(out);
   if (!options.json.empty()) check_writable(options.json);
 
-  FrameRuns runs(options, found.record, scene);
-  found.frame = {options.depth, found.record.reflections, scene.materials.size(),
-                 !subnormal_word(scene, arguments_of(found.record, scene)).empty(),
-                 runs.draw(base, "the whole machine")};
+  FrameRuns runs(options, found.record, scene, programs);
+  found.frame.depth = found.record.chip_depth();
+  found.frame.reflections = found.record.reflections;
+  found.frame.materials = shaders ? 0 : scene.materials.size();
+  found.frame.subnormal_words = !subnormal_word(scene, arguments_of(found.record, scene)).empty();
+  found.frame.drawn = runs.draw(base, "the whole machine");
+  found.frame.program = [&](const Configuration& machine) -> const RayProgram& {
+    RunRecord record = found.record;
+    record.configuration = machine;
+    return programs.program(record);
+  };
   found.specials = runs.specials(base);
   found.fit =
       fit::fit(base, found.frame.drawn.cycles, fit::parts_of(found.frame), slower,
@@ -288,7 +354,8 @@ int fit_command(const FitOptions& options) {
   const std::string shown = options.out.empty() ? fs::proximate(out).lexically_normal().string() : options.out;
   if (!options.json.empty()) files.write(options.json, json_of(found, shown));
   files.publish();
-  fmt::print("{}results   {}: {} sim --config {}\n", table_of(found), shown, program_command(), shown);
+  fmt::print("{}results   {}: {} sim --config {}{}\n", table_of(found), shown, program_command(), shown,
+             options.shaders.empty() ? "" : " --shaders " + options.shaders);
   return kDone;
 }
 

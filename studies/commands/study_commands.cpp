@@ -103,6 +103,7 @@ void StudyCommands::add_referee_command() {
 void StudyCommands::add_fit_command() {
   CLI::App* fit_app = add("fit", "find what a scene needs of a machine; leaves a configuration with only that");
   add_scene(*fit_app, fit_.scene, fit_.size, fit_.view, fit_.look, fit_.detail);
+  add_shaders(*fit_app, fit_.shaders);
   add_config(*fit_app, fit_.config, fit_.set);
   add_depth(*fit_app, fit_.depth);
   add_units(*fit_app, fit_.units);

@@ -28,8 +28,8 @@ RunRecord record_of(const std::string& set, const Scene& scene, const PictureSiz
 
 /// Memory of the frame; the record gets the set's kernels.
 MemoryImage image_of(const std::string& set, const Scene& scene, RunRecord& record) {
-  const SimOptions options;
-  MemoryImage image = build_shader_image(options, *options.shader_source.load(set), scene, record);
+  const ShaderSource source = SimOptions().shader_source;
+  MemoryImage image = build_shader_image(source, *source.load(set), scene, record);
   check_fits(record, scene);
   return image;
 }

@@ -28,8 +28,10 @@ Frame frame_of(int depth, bool reflections) {
   return frame;
 }
 
+const Program& program_of(const Configuration& machine) { return ray_kernel_program(KernelTarget(machine)); }
+
 bool has(const Configuration& configuration, const Kernels& kernels, Opcode opcode) {
-  return (operations_of(configuration, kernels)[alu_of(opcode)] >> operation_of(opcode) & 1) != 0;
+  return (operations_of(program_of(configuration), kernels)[alu_of(opcode)] >> operation_of(opcode) & 1) != 0;
 }
 
 TEST(Needs, OperationsAreThoseOfTheKernelsProgram) {
@@ -70,11 +72,11 @@ TEST(Needs, AKernelForReflectionsIsLeftOutWhereNothingReflects) {
 }
 
 TEST(Needs, CodeIsThatOfAllKernelsTogether) {
-  const Configuration machine;
+  const Program& program = program_of(Configuration());
   const Kernels all = {RayKernel::CastEye, RayKernel::CastSecondary, RayKernel::CastSecondaryDirect, RayKernel::Shade};
-  EXPECT_EQ(code_bytes(machine, all), 8 * ray_kernel_program(KernelTarget(machine)).code.size());
-  EXPECT_EQ(code_bytes(machine, {}), 0u);
-  EXPECT_LT(code_bytes(machine, {RayKernel::Shade}), code_bytes(machine, {RayKernel::CastEye}));
+  EXPECT_EQ(code_bytes(program, all), 8 * program.code.size());
+  EXPECT_EQ(code_bytes(program, {}), 0u);
+  EXPECT_LT(code_bytes(program, {RayKernel::Shade}), code_bytes(program, {RayKernel::CastEye}));
 }
 
 TEST(Needs, OneWordOfAnIntersectionLessWouldNotDo) {
@@ -109,7 +111,7 @@ TEST(Needs, NumbersAreTheFewestWithWhichTheKernelsAreAccepted) {
     const std::string field = cuts.front().field;
     found.insert(field);
     const Configuration least = with(machine, cuts.front());
-    const Program& program = ray_kernel_program(KernelTarget(machine));
+    const Program& program = program_of(machine);
     EXPECT_NO_THROW(check_instructions(program, "cast_secondary", least)) << field;
     EXPECT_NO_THROW(check_instructions(program, "cast_eye", least)) << field;
     const auto fewer = cuts.front().value.get<int>() - 1;
@@ -129,7 +131,7 @@ TEST(Needs, PcsHoldTheProgramAndCountersALongerFrame) {
     for (const Cut& cut : part(Configuration())) {
       const Configuration machine = with(Configuration(), cut);
       if (cut.field == "pc_bits") {
-        EXPECT_NO_THROW(check_program_length(machine, size32(ray_kernel_program(KernelTarget(machine)).code)));
+        EXPECT_NO_THROW(check_program_length(machine, size32(program_of(machine).code)));
       }
       if (cut.field == "counter_bits") {
         EXPECT_GE(counted_cycles(machine), 64u * 100'000);
@@ -172,7 +174,7 @@ TEST(Needs, OfAMachineThatHasTheLeastNothingIsTried) {
         break;
       }
   for (const AluType type : kEveryAluType)
-    machine.alus[type].without = optional_operations(type) & ~operations_of(machine, kKernels)[type];
+    machine.alus[type].without = optional_operations(type) & ~operations_of(program_of(machine), kKernels)[type];
   for (const Part& part : parts_of(frame_of(3, true))) {
     const std::vector<Cut> cuts = part(machine);
     EXPECT_TRUE(cuts.empty()) << cuts.front().field;

@@ -42,6 +42,27 @@ expect "... on the same picture" 0 "" cmp "$folder/lockstep/image.png" "$folder/
 expect "random programs run on it" 0 " 0 differences" "$raypool" cosim --config "$folder/cornell.json" --programs 20 \
   --seed 1 --quiet --save "$folder"
 
+# A shader set, on a machine with what its shaders need alone.
+set=cpp_model/shader/cases/reflections
+shaded=(cornell --size 16x12 --depth 4 --shaders "$set" --quiet)
+expect "a shader set is fitted" 0 "cases/reflections: what it needs of 2w2c" "$raypool" fit "${shaded[@]}" \
+  --config 2w2c --out "$folder/shaded.json" --json "$folder/shaded-found.json"
+expect "... which the JSON has" 0 '"shaders": "cpp_model/shader/cases/reflections"' cat "$folder/shaded-found.json"
+expect "... to a machine whose rays come back" 0 '"miss_records": true' cat "$folder/shaded.json"
+for machine in 2w2c "$folder/shaded.json"; do
+  "$raypool" sim "${shaded[@]}" --config "$machine" --engine model --out "$folder/shaded-$(basename "$machine" .json)"
+done
+expect "... that draws the same picture" 0 "" cmp "$folder/shaded-2w2c/image.png" "$folder/shaded-shaded/image.png"
+expect "... in the cycles that fit has printed" 0 "" python3 - "$folder/shaded-found.json" \
+  "$folder/shaded-shaded/report.json" <<'CHECK'
+import json, sys
+found, report = (json.load(open(path)) for path in sys.argv[1:])
+assert report["cycles"] == found["cycles"]["fitted"], (report["cycles"], found["cycles"])
+CHECK
+expect "another set needs more words of a hit" 1 "the ray kernels need 20 words of an intersection" "$raypool" \
+  sim cornell --size 16x12 --shaders path --config "$folder/shaded.json" --set chip.miss_records=false \
+  --out "$folder/shaded-path"
+
 # One mirror more than the machine was fitted to; a machine without what a kernel has; the kernels of other programs.
 "$raypool" scene cornell --detail 0.1 --write-obj "$folder/mirror.obj" > "$folder/scene.txt"
 sed 's/mirror/matt/' "$folder/mirror.obj" > "$folder/matt.obj"
