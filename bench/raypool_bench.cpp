@@ -48,9 +48,11 @@ raypool::SimOptions frame_options(const std::string& config, const char* engine,
   return options;
 }
 
-Json draw(const BenchOptions& bench, const char* config, const char* engine) {
+/// `shaders`: the set that draws; empty: the built-in kernels.
+Json draw(const BenchOptions& bench, const char* config, const char* engine, const std::string& shaders = "") {
   const fs::path folder = fs::temp_directory_path() / fmt::format("raypool_bench.{}", getpid());
-  const raypool::SimOptions options = frame_options(config, engine, folder);
+  raypool::SimOptions options = frame_options(config, engine, folder);
+  if (!shaders.empty()) options.shaders = shaders, options.samples = 4;
   Json best;
   for (int i = 0; i < bench.repetitions; ++i) {
     raypool::sim_command(options);
@@ -118,6 +120,7 @@ void compare_units(const BenchOptions& bench, const std::string& config) {
 void compare_engines(const BenchOptions& bench) {
   fmt::print("cornell, 128x128, depth 5, the whole chip; best of {}. native uses every core, the others one.\n",
              bench.repetitions);
+  fmt::print("The last three are shader sets, with four samples a pixel.\n");
   fmt::print("config  engine        seconds   krays/s  kcycles/s  thousand thread instructions/s\n");
   Json small;
   for (const char* config : {"4w4c", "8w8c"}) {
@@ -129,6 +132,7 @@ void compare_engines(const BenchOptions& bench) {
   }
   const double cycles = small["cycles"];
   const double thread_instructions = small["thread_instructions"];
+  for (const char* set : {"whitted", "preview", "path"}) print_row(set, "native", draw(bench, "8w8c", "native", set));
   fmt::print("best open GPU RTL, 4 warps x 4 lanes: {:.0f} kcycles/s, {:.0f} thousand thread instructions/s\n",
              kReferenceCycles / 1e3, kReferenceThreadInstructions / 1e3);
   fmt::print("raypool 4w4c rtl against it: {:.1f} times the cycles, {:.1f} times the thread instructions\n\n",

@@ -64,17 +64,26 @@ TEST(FunctionRunner, RayKernelsLeaveInEveryModeWhatTheyLeaveAsCpp) {
         const auto which = static_cast<RayKernel>(number);
         const FunctionRunner runner(record_kernel(
             "k", [&](RecordedKernel& k) { run_kernel(which, k); }, KernelTarget(mode.fused, false, culling)));
-        for (uint32_t seed = 1; seed <= 20; ++seed) {
-          RayThread source(seed), recorded(seed);
-          source.thread.mode = recorded.thread.mode = mode;
-          source.thread.culling = recorded.thread.culling = culling;
-          run_native(which, source.thread);
-          runner.run(recorded.thread);
-          ASSERT_EQ(recorded.thread.rays, source.thread.rays) << kRayKernelNames[which] << ", seed " << seed;
-          ASSERT_EQ(words_of_frame(recorded.thread), words_of_frame(source.thread))
-              << kRayKernelNames[which] << ", seed " << seed;
-          rays += source.thread.rays.size();
-          contributions += source.thread.frame.size();
+        RayThread shared(1);  // what the threads of a packet have in common
+        for (uint32_t seed = 1; seed <= 20;) {
+          std::vector<NativeThread> packet;
+          for (const size_t size = 1 + seed % FunctionRunner::kMostThreads; packet.size() < size; ++seed) {
+            packet.push_back(RayThread(seed).thread);
+            packet.back().arguments = &shared.arguments;
+            packet.back().memory = &shared.memory;
+            packet.back().mode = mode;
+            packet.back().culling = culling;
+          }
+          std::vector<NativeThread> sources = packet;
+          runner.run(packet.data(), packet.size());
+          for (size_t i = 0; i < packet.size(); ++i) {
+            run_native(which, sources[i]);
+            ASSERT_EQ(packet[i].rays, sources[i].rays) << kRayKernelNames[which] << ", before seed " << seed;
+            ASSERT_EQ(words_of_frame(packet[i]), words_of_frame(sources[i]))
+                << kRayKernelNames[which] << ", before seed " << seed;
+            rays += sources[i].rays.size();
+            contributions += sources[i].frame.size();
+          }
         }
       }
     }
@@ -130,6 +139,32 @@ class Written {
   }
   Function function;
 };
+
+TEST(FunctionRunner, ThreadsOfAPacketGoTheirOwnWays) {
+  using Int = RecordedKernel::Int;
+  const FunctionRunner runner(record_kernel("k", [](RecordedKernel& k) {
+    Int sum = 0, i = 0;
+    k.while_([&] { return i < k.thread(); },
+             [&] {
+               k.if_((i & 1) == 0, [&] { sum += i; }, [&] { sum += 100; });
+               i += 1;
+             });
+    k.if_(k.thread() != 5, [&] {
+      k.set_word(0, sum);
+      k.ray_out();
+    });
+  }));
+  RayThread shared(1);
+  std::vector<NativeThread> packet(FunctionRunner::kMostThreads, shared.thread);
+  for (uint32_t i = 0; i < packet.size(); ++i) packet[i].thread = i;
+  runner.run(packet.data(), packet.size());
+  for (uint32_t i = 0; i < packet.size(); ++i) {
+    ASSERT_EQ(packet[i].rays.size(), i == 5 ? 0u : 1u) << i;
+    if (i == 5) continue;
+    const uint32_t even = (i + 1) / 2, odd = i / 2;
+    EXPECT_EQ(packet[i].rays[0][0], even * (even - 1) + 100 * odd) << i;
+  }
+}
 
 TEST(FunctionRunner, ARegisterThatWasNeverWrittenIsUndefinedInEveryRun) {
   Written written(1, 1);

@@ -6,7 +6,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "arith/arith.hpp"
@@ -66,5 +69,33 @@ struct NativeThread {
   std::vector<FrameContribution> frame;  ///< what `rfb` exported, in order
 };
 void run_native(RayKernel kernel, NativeThread& thread);
+
+/// What runs threads of the ray kernels without a machine: one of them, or several at a time, which have the same
+/// arguments, memory and mode.
+class NativeKernels {
+ public:
+  using Run = std::function<void(RayKernel, NativeThread* threads, size_t count)>;
+
+  NativeKernels() = default;
+  NativeKernels(size_t most, Run run) : most_(most), run_(std::move(run)) {}
+  /// From what runs one.
+  template <typename One, std::enable_if_t<std::is_invocable_v<One&, RayKernel, NativeThread&> &&
+                                               !std::is_same_v<std::decay_t<One>, NativeKernels>,
+                                           int> = 0>
+  NativeKernels(One one)
+      : run_([one = std::move(one)](RayKernel which, NativeThread* threads, size_t count) {
+          for (size_t i = 0; i < count; ++i) one(which, threads[i]);
+        }) {}
+
+  explicit operator bool() const { return run_ != nullptr; }
+  /// How many threads at a time, at most.
+  size_t most() const { return most_; }
+  void operator()(RayKernel which, NativeThread* threads, size_t count) const { run_(which, threads, count); }
+  void operator()(RayKernel which, NativeThread& thread) const { run_(which, &thread, 1); }
+
+ private:
+  size_t most_ = 1;
+  Run run_;
+};
 
 }  // namespace raypool

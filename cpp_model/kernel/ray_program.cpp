@@ -54,8 +54,10 @@ RayProgram make_ray_program(RayFunctions functions, const KernelTarget& target) 
   compile_all(made, target);
   std::vector<kernel::FunctionRunner> runners;
   for (const kernel::Function& function : made.functions) runners.emplace_back(function);
-  made.native = [all = std::make_shared<const std::vector<kernel::FunctionRunner>>(std::move(runners))](
-                    RayKernel which, NativeThread& thread) { (*all)[to_underlying(which)].run(thread); };
+  made.native = {
+      kernel::FunctionRunner::kMostThreads,
+      [all = std::make_shared<const std::vector<kernel::FunctionRunner>>(std::move(runners))](
+          RayKernel which, NativeThread* threads, size_t count) { (*all)[to_underlying(which)].run(threads, count); }};
   return made;
 }
 

@@ -3,8 +3,6 @@
 // The ray kernels that a frame is drawn with: the built-in ones, or others that take their places.
 #pragma once
 
-#include <functional>
-
 #include "config/configuration.hpp"
 #include "enum_array.hpp"
 #include "isa/program.hpp"
@@ -23,8 +21,8 @@ struct RayProgram {
   Program program;         ///< with entries of kRayKernelNames
   RecordLayout layout;     ///< of the intersections that the kernels import; compact where the target is
   RayFunctions functions;  ///< what the program was compiled from, with words of whole intersections
-  /// Runs one thread of a kernel without a machine, with the program's bits; from several threads of C++ at once too.
-  std::function<void(RayKernel, NativeThread&)> native;
+  /// With the program's bits; from several threads of C++ at once too.
+  NativeKernels native;
   int slots = 0;  ///< of spill memory that the kernels use, where their functions have one
   EnumArray<RayKernel, kernel::CompileCounts, kRayKernels> counts{};
 };

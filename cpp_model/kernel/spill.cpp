@@ -1,6 +1,7 @@
 #include "kernel/spill.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -77,16 +78,6 @@ class Spiller {
     return predicates_ ? values_.predicates_after[op] : values_.registers_after[op];
   }
   int defined(size_t op) const { return predicates_ ? effects_[op].predicate_defined : effects_[op].register_defined; }
-  /// As an operand, not only because a guard leaves lanes as they are.
-  bool reads(size_t op, int number) const {
-    const Effects& effect = effects_[op];
-    if (predicates_) {
-      return std::find(std::begin(effect.predicate_uses), std::end(effect.predicate_uses), number) !=
-             std::end(effect.predicate_uses);
-    }
-    const auto end = effect.register_uses.begin() + static_cast<std::ptrdiff_t>(effect.operands);
-    return std::find(effect.register_uses.begin(), end, number) != end;
-  }
   bool begins(size_t op, int number) const { return defined(op) == number && function_.ops[op].spill != Spill::Reload; }
 
   /// It follows what defines the number, and finds it in its register.
@@ -103,10 +94,11 @@ class Spiller {
     values_ = find_liveness(function_, true);
     effects_.clear();
     for (const Op& op : ops) effects_.push_back(effects(op));
-    predecessors_.assign(size, {});
-    const auto successors = find_successors(function_);
-    for (size_t i = 0; i < size; ++i)
-      for (const size_t next : successors[i]) predecessors_[next].push_back(i);
+    find_predecessors();
+    find_readers();
+    next_of_source_.assign(size, size);
+    for (size_t i = size - 1; i-- > 0;)
+      next_of_source_[i] = ops[i + 1].spill == Spill::None ? i + 1 : next_of_source_[i + 1];
     homes_.resize(at(numbers()));
     counted_.resize(at(numbers()), false);
     excluded_.assign(at(numbers()), false);
@@ -130,6 +122,30 @@ class Spiller {
       note(i);
     }
     find_busy_places();
+  }
+  void find_predecessors() {
+    const size_t size = function_.ops.size();
+    predecessors_.assign(size, {});
+    const auto successors = find_successors(function_);
+    for (size_t i = 0; i < size; ++i)
+      for (const size_t next : successors[i]) predecessors_[next].push_back(i);
+    follows_.assign(size, 0);
+    for (size_t i = 1; i < size; ++i)
+      follows_[i] = predecessors_[i].size() == 1 && predecessors_[i][0] + 1 == i ? 1 : 0;
+  }
+  void find_readers() {
+    readers_.assign(at(numbers()), {});
+    for (size_t i = 0; i < effects_.size(); ++i) {
+      const auto note = [&](int number) {
+        if (number == kNothing) return;
+        std::vector<size_t>& its = readers_[at(number)];
+        if (its.empty() || its.back() != i) its.push_back(i);
+      };
+      if (predicates_)
+        std::for_each(std::begin(effects_[i].predicate_uses), std::end(effects_[i].predicate_uses), note);
+      else
+        std::for_each_n(effects_[i].register_uses.begin(), effects_[i].operands, note);
+    }
   }
   void note(size_t op) {
     NumberSet held = live_[op];
@@ -156,13 +172,14 @@ class Spiller {
   void find_busy_places() {
     const size_t size = function_.ops.size();
     busy_.assign(size, kNoWords);
+    word_uses_.fill(0);
     written_.assign(size, kNoWords);
     busy_slots_.clear();
     if (predicates_) return;
     const std::vector<NumberSet> needed = find_needed_places(function_);
     for (size_t i = 0; i < size; ++i) {
       needed[i].for_each([&](int place) {
-        if (place < kPackageWords) busy_[i] |= 1u << place;
+        if (place < kPackageWords) take_word(i, place);
       });
     }
     for (int number = 0; number < numbers(); ++number) reserve(number, homes_[at(number)]);
@@ -175,10 +192,15 @@ class Spiller {
     for (size_t i = first; i <= last && i < function_.ops.size(); ++i)
       if (values_after(i).has(number) || begins(i, number)) visit(i);
   }
+  void take_word(size_t op, int word) {
+    if ((busy_[op] >> word & 1) != 0) return;
+    busy_[op] |= 1u << word;
+    ++word_uses_[at(word)];
+  }
   void reserve(int number, const Home& home) {
     if (home.kind == Home::Kind::Word) {
       for_range(number, [&](size_t i) {
-        busy_[i] |= 1u << home.number;
+        take_word(i, home.number);
         written_[i] |= 1u << home.number;
       });
     } else if (home.kind == Home::Kind::Slot) {
@@ -186,7 +208,7 @@ class Spiller {
       for_range(number, [&](size_t i) { busy_slots_[at(home.number)].insert(static_cast<int>(i)); });
     } else if (home.kind == Home::Kind::Again) {
       const Op& op = function_.ops[definitions_[at(number)].front()];
-      if (is(op, Opcode::Rld)) for_range(number, [&](size_t i) { busy_[i] |= 1u << op.word; });
+      if (is(op, Opcode::Rld)) for_range(number, [&](size_t i) { take_word(i, op.word); });
     }
   }
 
@@ -237,11 +259,10 @@ class Spiller {
         return op.word;
     }
     int best = kNothing;
-    std::ptrdiff_t most = -1;
+    int most = -1;
     for (int word = 0; word < function_.slice_words; ++word) {
       if ((free >> word & 1) == 0) continue;
-      const auto used =
-          std::count_if(busy_.begin(), busy_.end(), [&](uint32_t busy) { return (busy >> word & 1) != 0; });
+      const int used = word_uses_[at(word)];
       if (used > most) most = used, best = word;
     }
     return best;
@@ -266,11 +287,9 @@ class Spiller {
   bool holds_too_many(size_t op) const { return pressure_[op] > limit_; }
   /// Nothing is gained between here and the next op of the source if that reads the number.
   bool read_next(size_t op, int number) const {
-    for (size_t i = op + 1; i < function_.ops.size(); ++i) {
-      if (reads(i, number)) return true;
-      if (function_.ops[i].spill == Spill::None) return false;
-    }
-    return false;
+    const std::vector<size_t>& readers = readers_[at(number)];
+    const auto next = std::upper_bound(readers.begin(), readers.end(), op);
+    return next != readers.end() && *next <= next_of_source_[op];
   }
 
   /// The register keeps the value until the code holds too many; then it comes back before the next op that reads it.
@@ -280,7 +299,10 @@ class Spiller {
     const size_t first = ranges_[at(number)].first, last = ranges_[at(number)].second;
     plan.first = first;
     plan.held.assign(last - first + 1, 1);
+    std::vector<char> reads(last - first + 1, 0);  // as an operand, not only because a guard leaves lanes as they are
+    for (const size_t op : readers_[at(number)]) reads[op - first] = 1;
     const auto held_before = [&](size_t op) {
+      if (follows_[op] != 0) return op > first && plan.held[op - 1 - first] != 0;
       const std::vector<size_t>& predecessors = predecessors_[op];
       return !predecessors.empty() && std::all_of(predecessors.begin(), predecessors.end(), [&](size_t before) {
         return before >= first && before <= last && plan.held[before - first] != 0;
@@ -289,7 +311,7 @@ class Spiller {
     for (bool changed = true; changed;) {
       changed = false;
       for (size_t i = first; i <= last; ++i) {
-        bool held = held_before(i) || (reads(i, number) && !is_store_of(i, number));
+        bool held = held_before(i) || (reads[i - first] != 0 && !is_store_of(i, number));
         if (defined(i) == number && !effects_[i].partial) held = true;
         if (held && holds_too_many(i) && live_[i].has(number) && !read_next(i, number)) held = false;
         changed |= (plan.held[i - first] != 0) != held;
@@ -298,12 +320,12 @@ class Spiller {
     }
     for (size_t i = first; i <= last; ++i) {
       const bool held = held_before(i);
-      if (reads(i, number) && !held && !is_store_of(i, number)) {
+      if (reads[i - first] != 0 && !held && !is_store_of(i, number)) {
         plan.reloads.push_back(i);
         plan.reload_cost += weight_[i];
       }
       const bool defines = defined(i) == number;
-      if (defines && effects_[i].partial && !held && !reads(i, number)) plan.renamed.push_back(i);
+      if (defines && effects_[i].partial && !held && reads[i - first] == 0) plan.renamed.push_back(i);
       if (live_[i].has(number) && plan.held[i - first] == 0 && !defines && holds_too_many(i)) ++plan.relieved;
     }
     return plan;
@@ -476,13 +498,17 @@ class Spiller {
   Liveness values_;              // wherever they are
   std::vector<Effects> effects_;
   std::vector<std::vector<size_t>> predecessors_;
-  std::vector<Home> homes_;    // [number]
-  std::vector<bool> counted_;  // [number]
+  std::vector<char> follows_;                 // [op] only the op in front of it leads to it
+  std::vector<std::vector<size_t>> readers_;  // [number] ops that have it as an operand
+  std::vector<size_t> next_of_source_;        // [op] the next op that no spilling has put there
+  std::vector<Home> homes_;                   // [number]
+  std::vector<bool> counted_;                 // [number]
   std::vector<bool> excluded_;
   std::vector<std::pair<size_t, size_t>> ranges_;  // [number] first and last op
   std::vector<std::vector<size_t>> definitions_;   // [number] without reloads
   std::vector<double> weight_;                     // [op]
   std::vector<int> pressure_;                      // [op] how many are held
+  std::array<int, kPackageWords> word_uses_{};     // [word] ops where it is busy
   std::vector<uint32_t> busy_;                     // [op] words, a bit each
   std::vector<uint32_t> written_;                  // [op] words that other values lie in
   std::vector<NumberSet> busy_slots_;              // [slot] ops

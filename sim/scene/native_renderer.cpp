@@ -16,6 +16,8 @@
 namespace raypool {
 namespace {
 
+constexpr uint32_t kPiece = 1024;  // pixels
+
 void require_range(const char* what, int value, int low, int high) {
   if (value < low || value > high)
     throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
@@ -26,11 +28,16 @@ class Worker {
  public:
   Worker(const std::array<uint32_t, kArguments>& arguments, Memory& memory, const Tracer& tracer,
          const NativeOptions& options)
-      : frame(options.width, options.height), tracer_(tracer), options_(options) {
-    thread_.arguments = &arguments;
-    thread_.memory = &memory;
-    thread_.mode = options.mode;
-    thread_.culling = options.culling;
+      : frame(options.width, options.height),
+        tracer_(tracer),
+        options_(options),
+        kernels_(options.kernel ? options.kernel : NativeKernels(run_native)) {
+    NativeThread thread;
+    thread.arguments = &arguments;
+    thread.memory = &memory;
+    thread.mode = options.mode;
+    thread.culling = options.culling;
+    for (Packet& packet : packets_) packet.threads.assign(kernels_.most(), thread);
     if (options.work != nullptr) visits_.emplace(tracer.traversal().wide_bvh());
   }
 
@@ -42,7 +49,7 @@ class Worker {
     NativeWork work;
     size_t told = 0;
     for (const PixelTile& tile : tiles) {
-      render_tile(tile);
+      render({tile});
       tracer_.traversal().places_of(*visits_, std::exchange(told, visits_->places.size()), work.chip_places);
       work.tile_ends.push_back(work.chip_places.size());
     }
@@ -54,16 +61,27 @@ class Worker {
     return work;
   }
 
-  void render_tile(const PixelTile& tile) {
-    for (uint32_t i = 0; i < tile.pixels; ++i) {
-      thread_.thread = i;
-      thread_.threads = tile.pixels;
-      thread_.block = tile.x | tile.y << 16;
-      run(RayKernel::CastEye);
-      while (!pending_.empty()) {
-        const Ray ray = pending_.back();
-        pending_.pop_back();
-        follow(ray);
+  void render(const std::vector<PixelTile>& tiles) {
+    Packet& eye = packets_[RayKernel::CastEye];
+    for (const PixelTile& tile : tiles) {
+      for (uint32_t i = 0; i < tile.pixels; ++i) {
+        NativeThread& thread = eye.threads[eye.count++];
+        thread.thread = i;
+        thread.threads = tile.pixels;
+        thread.block = tile.x | tile.y << 16;
+        if (eye.count < kernels_.most() && i + 1 < tile.pixels) continue;
+        run(RayKernel::CastEye);
+        follow_all();
+      }
+    }
+    // What has not filled a packet.
+    for (bool waits = true; waits;) {
+      waits = false;
+      for (size_t kernel = 0; kernel < kRayKernels; ++kernel) {
+        if (packets_[kernel].count == 0) continue;
+        run(static_cast<RayKernel>(kernel));
+        follow_all();
+        waits = true;
       }
     }
   }
@@ -72,17 +90,31 @@ class Worker {
   NativeStatistics statistics;
 
  private:
+  /// Threads that run next.
+  struct Packet {
+    std::vector<NativeThread> threads;
+    size_t count = 0;
+  };
+
   void run(RayKernel kernel) {
-    thread_.rays.clear();
-    thread_.frame.clear();
-    if (options_.kernel) {
-      options_.kernel(kernel, thread_);
-    } else {
-      run_native(kernel, thread_);
+    Packet& packet = packets_[kernel];
+    const size_t count = std::exchange(packet.count, 0);
+    for (size_t i = 0; i < count; ++i) packet.threads[i].rays.clear(), packet.threads[i].frame.clear();
+    kernels_(kernel, packet.threads.data(), count);
+    statistics.kernel_threads[kernel] += count;
+    for (size_t i = 0; i < count; ++i) {
+      const NativeThread& thread = packet.threads[i];
+      pending_.insert(pending_.end(), thread.rays.begin(), thread.rays.end());
+      for (const FrameContribution& contribution : thread.frame) statistics.contributions += frame.add(contribution);
     }
-    ++statistics.kernel_threads[kernel];
-    pending_.insert(pending_.end(), thread_.rays.begin(), thread_.rays.end());
-    for (const FrameContribution& contribution : thread_.frame) statistics.contributions += frame.add(contribution);
+  }
+
+  void follow_all() {
+    while (!pending_.empty()) {
+      const Ray ray = pending_.back();
+      pending_.pop_back();
+      follow(ray);
+    }
   }
 
   void follow(const Ray& ray) {
@@ -93,28 +125,31 @@ class Worker {
       return;
     }
     if (options_.culling && is_black(ray)) return;
-    thread_.thread = 0;
-    thread_.threads = 1;
-    thread_.block = 0;
-    const bool goes_on = options_.trace ? options_.trace(ray, thread_.input)
-                         : visits_      ? tracer_.trace(ray, thread_.input, *visits_)
-                                        : tracer_.trace(ray, thread_.input);
+    const bool goes_on = options_.trace ? options_.trace(ray, hit_)
+                         : visits_      ? tracer_.trace(ray, hit_, *visits_)
+                                        : tracer_.trace(ray, hit_);
     statistics.ray_counts.count(ray, goes_on);
-    if (goes_on) run(shadow ? RayKernel::Shade : secondary(depth));
+    if (!goes_on) return;
+    const RayKernel kernel = shadow ? RayKernel::Shade : secondary(depth);
+    Packet& packet = packets_[kernel];
+    packet.threads[packet.count++].input = hit_;
+    if (packet.count == kernels_.most()) run(kernel);
   }
 
-  // Of the hit of a ray of this depth, which is the thread's input.
+  // Of the hit of a ray of this depth.
   RayKernel secondary(uint32_t depth) {
     const RayKernel kernel = secondary_kernel(options_.depth, options_.reflections);
     if (kernel == RayKernel::CastSecondaryDirect || !options_.culling) return kernel;
     const bool deepest = depth == options_.depth;
     statistics.dropped_rays += deepest;
-    return deepest || !tracer_.reflects(thread_.input[word::kMaterial]) ? RayKernel::CastSecondaryDirect : kernel;
+    return deepest || !tracer_.reflects(hit_[word::kMaterial]) ? RayKernel::CastSecondaryDirect : kernel;
   }
 
   const Tracer& tracer_;
   const NativeOptions& options_;
-  NativeThread thread_;
+  const NativeKernels kernels_;
+  EnumArray<RayKernel, Packet, kRayKernels> packets_;
+  Intersection hit_{};
   std::vector<Ray> pending_;
   std::optional<WideVisits> visits_;
 };
@@ -233,12 +268,18 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   const uint32_t columns = (options.width + tile_width - 1) / tile_width;
   const uint64_t tiles = uint64_t{columns} * ((options.height + tile_height - 1) / tile_height);
   const bool in_parts = !options.parts.empty();
-  const uint64_t pieces = in_parts ? options.parts.size() : tiles;
+  // So many that few packets run unfilled.
+  const uint64_t at_once = options.kernel && options.kernel.most() > 1 ? std::max(1u, kPiece / options.contents) : 1;
+  const uint64_t pieces = in_parts ? options.parts.size() : (tiles + at_once - 1) / at_once;
   if (options.work != nullptr) options.work->assign(pieces, {});
   const auto tiles_of = [&](uint64_t piece) {
     if (in_parts) return options.parts[piece];
-    const auto row = static_cast<uint32_t>(piece / columns), column = static_cast<uint32_t>(piece % columns);
-    return std::vector<PixelTile>{{column * tile_width, row * tile_height, options.contents}};
+    std::vector<PixelTile> several;
+    for (uint64_t tile = piece * at_once; tile < std::min(tiles, (piece + 1) * at_once); ++tile) {
+      const auto row = static_cast<uint32_t>(tile / columns), column = static_cast<uint32_t>(tile % columns);
+      several.push_back({column * tile_width, row * tile_height, options.contents});
+    }
+    return several;
   };
   const size_t workers_count = options.threads;
   std::vector<Worker> workers(workers_count, Worker(arguments, memory, tracer, options));
@@ -250,7 +291,7 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
         if (options.work != nullptr) {
           (*options.work)[piece] = workers[index].work_of(tiles_of(piece));
         } else {
-          for (const PixelTile& tile : tiles_of(piece)) workers[index].render_tile(tile);
+          workers[index].render(tiles_of(piece));
         }
       }
     } catch (...) {

@@ -73,8 +73,8 @@ struct NativeOptions {
   uint32_t contents = 64;   ///< size of an eye tile in pixels, a power of two; changes no picture
   uint32_t threads = 1;     ///< 1 .. kMostRenderThreads; changes no picture and no count
   arith::Mode mode;
-  bool culling = false;                                  ///< chip.culling; changes no picture
-  std::function<void(RayKernel, NativeThread&)> kernel;  ///< run_native when empty
+  bool culling = false;  ///< chip.culling; changes no picture
+  NativeKernels kernel;  ///< run_native when empty
   /// Called with camera_arguments() before the frame begins, to change them; may be empty.
   std::function<void(std::array<uint32_t, kArguments>&)> change_arguments;
   std::function<bool(const Ray&, Intersection&)> trace;  ///< the tracer's when empty
