@@ -378,6 +378,7 @@ class Lowering {
   };
   std::unordered_map<uint32_t, Product> products_;  // multiplications that wait for the addition that takes them in
   std::unordered_map<uint32_t, std::pair<Scalar, bool>> images_;  // texture record's address; or the picture
+  std::set<uint32_t> unseen_;                                     // pictures of which nothing is kept
   std::unordered_map<uint32_t, Value> phis_;                      // declared ones
   std::unordered_map<uint32_t, Value>
       kept_;                       // [id] variables for values that are read behind the loop they are made in

@@ -154,7 +154,7 @@ Pointer Lowering::global(uint32_t id, const Variable& variable) {
           return pointer;
         }
         case TypeKind::Image:
-          pointer.to = Pointer::To::Picture;
+          pointer.to = resources_.unseen.count(place) == 0 ? Pointer::To::Picture : Pointer::To::Nothing;
           return pointer;
         case TypeKind::AccelerationStructure:
           pointer.to = Pointer::To::Tree;
@@ -238,8 +238,9 @@ void Lowering::set_address(const Line& line, const Scalar& address) {
 void Lowering::load(const Line& line) {
   const Pointer pointer = pointer_of(line.operands.at(0));
   if (pointer.to == Pointer::To::Tree) return;
-  if (pointer.to == Pointer::To::Picture) {
+  if (pointer.to == Pointer::To::Picture || pointer.to == Pointer::To::Nothing) {
     images_[line.id] = {Scalar{}, true};
+    if (pointer.to == Pointer::To::Nothing) unseen_.insert(line.id);
     return;
   }
   if (pointer.to == Pointer::To::Textures) {

@@ -228,9 +228,17 @@ void Lowering::end_calls() {
 /// Places for what the shader stores, which shaders of its stage share.
 void Lowering::declare_stored(const Module& shader) {
   std::vector<Stored>& all = path_->stored[shader.stage()];
+  std::set<uint32_t> unseen;
   size_t stores = 0;
-  for (const Block& block : shader.blocks())
-    for (const Line& line : block.lines) stores += line.op == spv::Op::OpImageWrite ? 1 : 0;
+  for (const Block& block : shader.blocks()) {
+    for (const Line& line : block.lines) {
+      if (line.op == spv::Op::OpLoad) {
+        const Decorations& of = shader.decorations(line.operands.at(0));
+        if (of.binding && resources_.unseen.count({of.set.value_or(0), *of.binding}) != 0) unseen.insert(line.id);
+      }
+      stores += line.op == spv::Op::OpImageWrite && unseen.count(line.operands.at(0)) == 0 ? 1 : 0;
+    }
+  }
   while (all.size() < stores) {
     all.push_back({recorder_.declare_predicate(), {}});
     for (Scalar& scalar : all.back().values) scalar = declare(false);

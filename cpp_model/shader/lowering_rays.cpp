@@ -345,6 +345,7 @@ void Lowering::put_payload(uint32_t id, bool shadow) {
 void Lowering::write_picture(const Line& line) {
   const auto image = images_.find(line.operands.at(0));
   if (image == images_.end() || !image->second.second) fail("imageStore writes to the picture alone");
+  if (unseen_.count(line.operands.at(0)) != 0) return;
   if (loops_ > 0) fail("imageStore is called in a loop: add up first, and store behind the loop");
   const Value place = get(line.operands.at(1)), colour = get(line.operands.at(2));
   if (path_) return store_later(place, colour);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,6 +57,7 @@ struct Resources {
   std::map<Place, Buffer> buffers;
   std::map<Place, std::vector<Word>> blocks;  ///< uniform blocks, by word of their layout
   std::map<Place, Textures> textures;
+  std::set<Place> unseen;  ///< pictures of which nothing is kept
   std::vector<Word> push_constants;
   std::map<RecordPlace, std::vector<Word>> records;  ///< of shaders, by word of their layout
   /// Address of the first material record of 32 bytes, where each material is a geometry; none: all are geometry 0.

@@ -150,7 +150,7 @@ struct Entry {
 
 class Folder : public ShaderSet {
  public:
-  Folder(const fs::path& folder, const ShaderTable& table) : folder_(folder.string()) {
+  Folder(const fs::path& folder, const ShaderTable& table) : folder_(folder.string()), unseen_(table.unseen) {
     const auto found = find_files(folder, table);
     add_ray_generation(found[kRayGeneration], table.ray_generation);
     for (const auto& [stage, names] : {std::pair(kMiss, table.misses), std::pair(kCallable, table.callables)})
@@ -363,11 +363,13 @@ class Folder : public ShaderSet {
                       "declare it rgba32f image2D",
                       module.name(), binding.name));
     }
+    const auto is_seen = [&](const Binding& one) { return unseen_.count(one.place) == 0; };
     for (const Binding& other : bindings_) {
-      if (other.kind != BindingKind::Picture || other.place == binding.place) continue;
+      const bool is_other = other.kind == BindingKind::Picture && other.place != binding.place;
+      if (!is_other || !is_seen(other) || !is_seen(binding)) continue;
       throw InputError(
           fmt::format("{}: image '{}' is a second one beside '{}', and there is but one picture to write: "
-                      "use one",
+                      "let one of them hold \"nothing\" in shaders.json",
                       module.name(), binding.name, other.name));
     }
   }
@@ -421,6 +423,7 @@ class Folder : public ShaderSet {
   }
 
   std::string folder_;
+  std::set<Place> unseen_;
   Stages<File> files_;
   Stages<Entry> entries_;
   uint32_t groups_ = 0;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,7 @@ struct ShaderTable {
   std::string ray_generation;
   std::vector<std::string> misses, callables;
   std::vector<HitGroup> hit_groups;
+  std::set<Place> unseen;  ///< pictures of which nothing is kept
 };
 
 /// The shader record (shaderRecordEXT) of an entry of the table.

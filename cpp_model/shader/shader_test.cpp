@@ -226,8 +226,9 @@ TEST_P(ShaderFolders, LeaveWhatTheirSpirvLeaves) {
 
 /// But for those that wait for their rays, which waits_test.cpp and shader_engines_test.cpp compare.
 std::vector<std::string> folders() {
-  const std::set<std::string> waiting = {"triangle", "reflections", "shadow_inside", "bounces", "groups",
-                                         "cutouts",  "layers",      "table",         "nested",  "by_material"};
+  const std::set<std::string> waiting = {"triangle", "reflections", "shadow_inside", "bounces",
+                                         "groups",   "cutouts",     "layers",        "table",
+                                         "nested",   "by_material", "accumulated"};
   std::vector<std::string> names;
   for (const char* outer : {"shaders", "cpp_model/shader/cases"}) {
     const fs::path folder = fs::path(data_folder()) / outer;

@@ -44,7 +44,7 @@ struct DynamicIndex {
 };
 
 struct Pointer {
-  enum class To : uint8_t { Variable, Memory, Words, Textures, Picture, Tree };
+  enum class To : uint8_t { Variable, Memory, Words, Textures, Picture, Nothing, Tree };
   To to = To::Variable;
   uint32_t type = 0;      ///< of what it points to
   uint32_t variable = 0;  ///< Variable: its id

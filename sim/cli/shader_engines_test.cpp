@@ -209,7 +209,7 @@ TEST_F(ShaderEngines, AnyHitShadersCulledSidesAndTheTableOfShadersDoWhatTheyShou
   std::ofstream(green / "a.rchit") << begin << "void main() {}\n";
   const std::string expected = drawn(options(green.string(), "cornell"), "native");
   ASSERT_FALSE(expected.empty());
-  for (const char* set : {"layers", "table", "by_material"}) {
+  for (const char* set : {"layers", "table", "by_material", "accumulated"}) {
     const SimOptions checked = options(fmt::format("cpp_model/shader/cases/{}", set), "cornell");
     for (const char* engine : {"native", "model"}) EXPECT_TRUE(drawn(checked, engine) == expected) << set << engine;
   }

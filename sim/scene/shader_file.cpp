@@ -51,6 +51,12 @@ std::optional<JsonPlace> ShaderFile::binding(const shader::Place& place) const {
   return JsonPlace(json_, path_).at("bindings").at(found->second);
 }
 
+bool ShaderFile::holds_nothing(const shader::Place& place) const {
+  const std::optional<JsonPlace> entry = binding(place);
+  const std::optional<JsonPlace> holds = entry ? entry->find("holds") : std::nullopt;
+  return holds && holds->json() == "nothing";
+}
+
 std::optional<JsonPlace> ShaderFile::values(const shader::Place& place) const {
   const std::optional<JsonPlace> entry = binding(place);
   return entry ? entry->find("values") : std::nullopt;
@@ -103,6 +109,8 @@ shader::ShaderTable ShaderFile::table() const {
     const std::optional<JsonPlace> closest_hit = group.find("closest_hit"), any_hit = group.find("any_hit");
     table.hit_groups.push_back({closest_hit ? closest_hit->text() : "", any_hit ? any_hit->text() : ""});
   }
+  for (const auto& [place, number] : numbers_)
+    if (holds_nothing(place)) table.unseen.insert(place);
   return table;
 }
 

@@ -31,6 +31,8 @@ class ShaderFile {
   std::optional<JsonPlace> push_constants() const;
   std::optional<JsonPlace> record(const shader::RecordPlace& place) const;
   shader::ShaderTable table() const;
+  /// Nothing is kept of what is stored to this picture.
+  bool holds_nothing(const shader::Place& place) const;
   /// Whether each material is a geometry of its own.
   bool geometries_are_materials() const;
   /// Specialization constants, by constant_id: their bits.

@@ -91,7 +91,10 @@ class ShaderMemory {
           expect(binding, "tree");
           break;
         case shader::BindingKind::Picture:
-          expect(binding, "picture");
+          if (file_.holds_nothing(binding.place))
+            resources_.unseen.insert(binding.place);
+          else
+            expect(binding, "picture");
           break;
         case shader::BindingKind::Block:
           add_block(binding);
