@@ -38,7 +38,7 @@ void put_value(const shader::Member& member, const ShaderValue& value, const std
 /// The same of numbers, or of lists of them, in the order of memory: elements, of these columns, of these rows.
 void put_numbers(const shader::Member& member, const JsonPlace& numbers, std::vector<shader::Word>& words);
 
-/// What a list holds, and lists in it; of what is no list, itself.
+/// The elements of a list and of lists in it; of any other value, that value.
 std::vector<JsonPlace> leaves_of(const JsonPlace& place);
 
 /// A number's bits as a float, or as an integer of 32 bits.
