@@ -93,8 +93,11 @@ class LaneArithmetic {
   }
 
  private:
+  [[gnu::always_inline]] static Words is_number(const Words& a) {
+    return words_of((a & arith::detail::kMagnitude) <= arith::detail::kInfinity);
+  }
   [[gnu::always_inline]] static Words canonical(const Floats& value) {
-    return chosen(words_of(value == value), words_of(value), Words{} + arith::kQuietNan);
+    return chosen(is_number(words_of(value)), words_of(value), Words{} + arith::kQuietNan);
   }
   /// As arith::detail::order.
   [[gnu::always_inline]] static Ints order(const Words& a) {
@@ -102,7 +105,7 @@ class LaneArithmetic {
   }
   /// Of two numbers; a NaN is left out.
   [[gnu::always_inline]] static Words nearer(const Words& is_first, const Words& a, const Words& b) {
-    const Words a_is = words_of(floats_of(a) == floats_of(a)), b_is = words_of(floats_of(b) == floats_of(b));
+    const Words a_is = is_number(a), b_is = is_number(b);
     const Words of_numbers = chosen(is_first, a, b), quiet = Words{} + arith::kQuietNan;
     return chosen(a_is, chosen(b_is, of_numbers, a), chosen(b_is, b, quiet));
   }

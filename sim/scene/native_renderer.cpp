@@ -154,6 +154,39 @@ class Worker {
   std::optional<WideVisits> visits_;
 };
 
+/// What is handed out to workers, one at a time: tiles, or parts of several. Which worker gets which does not matter:
+/// pictures and counts are sums.
+class Pieces {
+ public:
+  explicit Pieces(const NativeOptions& options)
+      : options_(options),
+        tile_width_(1u << tile_width_log2(options.contents)),
+        tile_height_(options.contents / tile_width_),
+        columns_((options.width + tile_width_ - 1) / tile_width_),
+        tiles_(uint64_t{columns_} * ((options.height + tile_height_ - 1) / tile_height_)) {
+    // So many tiles that few packets run unfilled.
+    if (options.kernel && options.kernel.most() > 1) at_once_ = std::max(1u, kPiece / options.contents);
+  }
+
+  uint64_t count() const { return in_parts() ? options_.parts.size() : (tiles_ + at_once_ - 1) / at_once_; }
+  std::vector<PixelTile> tiles(uint64_t piece) const {
+    if (in_parts()) return options_.parts[piece];
+    std::vector<PixelTile> several;
+    for (uint64_t tile = piece * at_once_; tile < std::min(tiles_, (piece + 1) * at_once_); ++tile) {
+      const auto row = static_cast<uint32_t>(tile / columns_), column = static_cast<uint32_t>(tile % columns_);
+      several.push_back({column * tile_width_, row * tile_height_, options_.contents});
+    }
+    return several;
+  }
+
+ private:
+  bool in_parts() const { return !options_.parts.empty(); }
+
+  const NativeOptions& options_;
+  uint32_t tile_width_, tile_height_, columns_;
+  uint64_t tiles_, at_once_ = 1;
+};
+
 }  // namespace
 
 void NativeStatistics::add(const NativeStatistics& part) {
@@ -260,38 +293,20 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   }
   auto arguments = camera_arguments(scene, options.width, options.height, options.contents, options.mode.significand);
   if (options.change_arguments) options.change_arguments(arguments);
-  const uint32_t tile_width = 1u << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
   Memory memory = image.memory;
-
-  // Tiles, or parts of several, are handed out one at a time. Which thread gets which does not matter: pictures and
-  // counts are sums.
-  const uint32_t columns = (options.width + tile_width - 1) / tile_width;
-  const uint64_t tiles = uint64_t{columns} * ((options.height + tile_height - 1) / tile_height);
-  const bool in_parts = !options.parts.empty();
-  // So many that few packets run unfilled.
-  const uint64_t at_once = options.kernel && options.kernel.most() > 1 ? std::max(1u, kPiece / options.contents) : 1;
-  const uint64_t pieces = in_parts ? options.parts.size() : (tiles + at_once - 1) / at_once;
-  if (options.work != nullptr) options.work->assign(pieces, {});
-  const auto tiles_of = [&](uint64_t piece) {
-    if (in_parts) return options.parts[piece];
-    std::vector<PixelTile> several;
-    for (uint64_t tile = piece * at_once; tile < std::min(tiles, (piece + 1) * at_once); ++tile) {
-      const auto row = static_cast<uint32_t>(tile / columns), column = static_cast<uint32_t>(tile % columns);
-      several.push_back({column * tile_width, row * tile_height, options.contents});
-    }
-    return several;
-  };
+  const Pieces pieces(options);
+  if (options.work != nullptr) options.work->assign(pieces.count(), {});
   const size_t workers_count = options.threads;
   std::vector<Worker> workers(workers_count, Worker(arguments, memory, tracer, options));
   std::vector<std::exception_ptr> errors(workers_count);
   std::atomic<uint64_t> next{0};
   auto work = [&](size_t index) {
     try {
-      for (uint64_t piece = next++; piece < pieces; piece = next++) {
+      for (uint64_t piece = next++; piece < pieces.count(); piece = next++) {
         if (options.work != nullptr) {
-          (*options.work)[piece] = workers[index].work_of(tiles_of(piece));
+          (*options.work)[piece] = workers[index].work_of(pieces.tiles(piece));
         } else {
-          workers[index].render(tiles_of(piece));
+          workers[index].render(pieces.tiles(piece));
         }
       }
     } catch (...) {
