@@ -253,6 +253,28 @@ TEST_F(ShaderEngines, AClockCountsSamples) {
   EXPECT_TRUE(drawn(clock, "native") == drawn(options(sum.string(), "cornell"), "native"));
 }
 
+TEST_F(ShaderEngines, EachFrameBeginsWithTheBuffersOfTheSet) {
+  const fs::path set = folder_ / "counts";
+  fs::create_directories(set);
+  std::ofstream(set / "a.rgen")
+      << "#version 460\n#extension GL_EXT_ray_tracing : require\n"
+         "layout(set = 0, binding = 1, rgba32f) uniform image2D picture;\n"
+         "layout(set = 0, binding = 2) buffer Frames { uint count[192]; } frames;\n"
+         "void main() {\n"
+         "  const uint own = gl_LaunchIDEXT.y * 16u + gl_LaunchIDEXT.x;\n"
+         "  const uint before = frames.count[own];\n"
+         "  frames.count[own] = before + 10u;\n"
+         "  imageStore(picture, ivec2(gl_LaunchIDEXT.xy), vec4(float(before + 1u) / 128.0));\n"
+         "}\n";
+  std::ofstream(set / "a.rchit") << "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n";
+  std::vector<int> zeros(192, 0);
+  std::ofstream(set / "shaders.json") << fmt::format(
+      R"({{"bindings": [{{"binding": 2, "holds": {{"integers": [{}]}}}}]}})", fmt::join(zeros, ", "));
+  SimOptions counted = options(set.string(), "cornell");
+  counted.samples = 3;
+  EXPECT_GT(equal_pictures(counted, {"native", "functional", "model"}), 0);
+}
+
 TEST_F(ShaderEngines, MachinesWithoutAnInstructionAreRefusedByItsNameAndItsKernels) {
   const std::vector<std::array<std::string, 4>> missing = {{"path", "int", "imul", "cast_eye"},
                                                            {"ao", "int", "sel", "cast_secondary"},

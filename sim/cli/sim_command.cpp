@@ -414,7 +414,10 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
   warn_of_lost_shadows(record, scene, around.tracer);
   ChipOptions frame = chip_options(record, scene, image, around);
   record.chip.emplace();
+  // Shaders may have written to it.
+  const Memory at_first = record.samples > 1 ? image.memory : Memory();
   for (int sample = 0; sample < record.samples; ++sample) {
+    if (sample > 0) image.memory = at_first;
     frame.arguments[argument::kSample] = static_cast<uint32_t>(sample);
     draw_frame(options, engine, record, image, frame, out);
   }

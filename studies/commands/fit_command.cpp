@@ -171,9 +171,8 @@ ChipResult FrameRuns::draw_on(std::unique_ptr<ComputeUnit> device, MemoryImage& 
   ChipResult result = run_board(frame, *chip);
   if (around.frame == picture_) return result;
   throw std::runtime_error(
-      fmt::format("with {} the machine draws another picture than the kernels as C++: {} of {} "
-                  "pixels differ",
-                  what, compare(around.frame, picture_).pixels, record_.width * record_.height));
+      fmt::format("with {} the machine draws another picture than engine native: {} of {} pixels differ", what,
+                  compare(around.frame, picture_).pixels, record_.width * record_.height));
 }
 
 /// As people read it: a list by its length.
@@ -233,8 +232,8 @@ std::string table_of(const Found& found) {
                       100 * found.slower);
   text += fmt::format("simulated in {:.2f} s, before in {:.2f} s\n", found.fitted.wall_seconds,
                       found.frame.drawn.wall_seconds);
-  return text +
-         fmt::format("picture   in each of {} frames drawn that of the kernels as C++, byte for byte\n", found.runs);
+  return text + fmt::format("picture   in each of {} frames drawn that of {}, byte for byte\n", found.runs,
+                            record.shaders.empty() ? "the kernels as C++" : "engine native");
 }
 
 std::string json_of(const Found& found, const std::string& file) {
