@@ -8,6 +8,7 @@
 
 #include "bits.hpp"
 #include "isa/input_error.hpp"
+#include "kernel/passes.hpp"
 #include "kernel/schedule.hpp"
 #include "kernel/triples.hpp"
 
@@ -84,7 +85,7 @@ void make_room(Function& function, CompileCounts& counts) {
   Function spilled = function;
   if (!spill(spilled, counts.spilled)) allocate(function);
   function = std::move(spilled);
-  if (function.reuses_values) remove_idle_writes(function);
+  if (function.reuses_values) apply_where_places_suffice(function, remove_idle_writes);
 }
 
 /// All that happens to intermediate code before it gets machine registers.

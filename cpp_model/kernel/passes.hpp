@@ -4,9 +4,10 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "kernel/intermediate.hpp"
+#include "kernel/compiler.hpp"
 
 namespace raypool::kernel {
 
@@ -15,6 +16,14 @@ std::vector<int> find_single_definitions(const Function& function, bool predicat
 
 /// An op that makes a predicate 0 in all lanes.
 Op clearing(int predicate, const Location& where);
+
+/// A pass that takes ops out, unless what is left finds no registers or predicates, as colouring tries but some ways.
+template <typename Pass>
+void apply_where_places_suffice(Function& function, const Pass& pass) {
+  Function smaller = function;
+  pass(smaller);
+  if (has_places(smaller, false) && has_places(smaller, true)) function = std::move(smaller);
+}
 
 /// The operation that gives the same result with ra and rb exchanged, if there is one.
 std::optional<Opcode> exchanged(Opcode opcode);

@@ -604,8 +604,8 @@ bool spill(Function& function, SpillCounts& counts) {
   declare_late(function);
   if (!Spiller(function, false, counts).run()) return false;
   function.spill_memory.reset();
-  remove_dead(function);
-  remove_unneeded_stores(function);
+  apply_where_places_suffice(function, remove_dead);
+  apply_where_places_suffice(function, remove_unneeded_stores);
   return has_places(function, false) && has_places(function, true);
 }
 
