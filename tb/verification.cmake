@@ -32,8 +32,8 @@ foreach(boundary unit chip)
   raypool_long(80 shaders_in_lockstep_${boundary}_large)
 endforeach()
 
-# Random sets: the first few, and those that found a bug. 450: no registers for what spilling left, once stores went that
-# nothing needs. 612: a condition that nothing defines, kept in a register.
+# Random sets: the first few, and those that found a bug. 450: no registers for what spilling left, once stores went
+# that nothing needs. 612: a condition that nothing defines, kept in a register.
 add_test(NAME random_shaders COMMAND ${scripts}/tests/random_shaders.sh ${raypool_program}
   $<TARGET_FILE:raypool_random_set> 0 1 2 3 4 5 6 7 8 9 450 612)
 set_tests_properties(random_shaders PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 900)
