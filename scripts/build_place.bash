@@ -2,7 +2,7 @@
 # checkout that was copied or renamed they lead to the old one, where Ninja would configure and build.
 # shellcheck shell=bash
 
-# Until the caller ends no other one configures or builds in the folder; says so where that takes longer than a moment:
+# Until the caller ends no other one configures or builds in the folder; reports it if that takes longer than a moment:
 # take_turn BUILD; what the caller starts gets 9>&-
 take_turn() {
   exec 9> "$1/.lock"

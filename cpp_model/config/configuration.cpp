@@ -167,7 +167,8 @@ void read_section(Section& section, const Parameter (&rows)[count], std::string_
     if (parameter.section == name) section.read(parameter, configuration);
 }
 
-/// What is not said of the chip follows what is: as many pixels are held as the intersection pool has room for.
+/// Fields of the chip that are not set follow those that are: as many pixels are held as fit into the intersection
+/// pool.
 void read_chip(Section& chip, Configuration& configuration) {
   for (const std::string_view name : chip_sections()) {
     if (name == kChip) continue;

@@ -72,7 +72,7 @@ Json alu_schema(AluType type) {
   }
   for (const AluParameter& parameter : parameter::kOfAlu) {
     if (!applies(parameter, type)) continue;
-    const Range range = range_of(parameter, type);  // in any mode; what a mode asks for is said by schema_of(DepthRule)
+    const Range range = range_of(parameter, type);  // in any mode; what a mode requires is in schema_of(DepthRule)
     Json& property = schema["properties"][std::string(parameter.key)] = {{"description", parameter.meaning}};
     if (range.form == Range::Form::Instructions)
       property.update({{"type", "array"}, {"items", {{"enum", names_of(range)}}}, {"uniqueItems", true}});

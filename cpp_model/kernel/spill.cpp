@@ -515,7 +515,7 @@ class Spiller {
   std::vector<std::vector<Op>> before_, behind_;   // [op] what is put there
 };
 
-/// Where code jumps over what writes a register, lanes hold nothing in it before: says so, in front of the outermost
+/// Where code jumps over what writes a register, lanes hold nothing in it before: states that in front of the outermost
 /// jump or loop around its first write, for registers that would be held from the kernel's first op on.
 void declare_late(Function& function) {
   const std::vector<Op>& ops = function.ops;

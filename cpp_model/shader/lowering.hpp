@@ -111,7 +111,7 @@ class Lowering {
   // lowering_paths.cpp: kernels of shaders that wait. What all of them share comes first; it gives the lanes that
   // begin.
   Scalar begin_paths();
-  /// Rays whose hits do not count: by their flags, and by what an any-hit shader says. They go on.
+  /// Rays whose hits do not count: by their flags, and by what an any-hit shader decides. They go on.
   void ignore_sides();
   void run_any_hit(const AnyHitShader& shader);
   void pass_on();

@@ -31,7 +31,7 @@ class RandomShadersTest : public testing::Test {
   RandomShadersTest() { std::filesystem::create_directories(folder_); }
   ~RandomShadersTest() override { std::filesystem::remove_all(folder_); }
 
-  // What glslangValidator says of a set with a mistake; nothing of one without.
+  // What glslangValidator prints for a faulty set; nothing for a right one.
   std::string errors(const RandomShaders& shaders) const {
     std::ofstream(folder_ / "a.rgen") << shaders.ray_generation;
     std::ofstream(folder_ / "a.rchit") << shaders.closest_hit;

@@ -4,7 +4,7 @@
 // 2^OUT_BITS: radix-4 Booth digits of b, then a tree of carry-save adders. Combinational. a_i is unsigned; b_i is
 // unsigned, or signed with B_SIGNED, of up to 61 bits. OUT_BITS may be less than the product has: the rest is free.
 // With CUT the rows are left out below 2^CUT: the sum is less than it should be by at most 2^CUT for each pair of bits
-// of b below 2^CUT, CUT/2 of them rounded up, and how much less is not said.
+// of b below 2^CUT, CUT/2 of them rounded up; how much less is not specified.
 // With ENCODED b_i is what booth_digits made of b.
 // Digit i of b is -2 .. 2 and weighs 4^i; a row is the digit times a, inverted if the digit is negative, and the one
 // that completes the negation stands in the next row. Signs are not extended: -s*2^k = ~s*2^k - 2^k, and the sum of all

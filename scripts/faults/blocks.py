@@ -118,7 +118,7 @@ def faulty_read(text, name, signal, rng):
 
 
 def counts_of_copies(inside, signals):
-    """Where how many copies something has is said, as in {COUNT{x}}: [(begin, end)]."""
+    """Where the number of copies of something stands, as in {COUNT{x}}: [(begin, end)]."""
     groups = re.finditer(r"\{([^{},]*)(?=\{)", inside)
     return [found.span(1) for found in groups if not any(word in signals for word in re.findall(NAME, found[1]))]
 

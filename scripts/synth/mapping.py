@@ -96,14 +96,14 @@ class Remaining:
         self.begun = now()
 
     def seconds_after(self, kind):
-        """When `kind` is done too; None where nothing can be said."""
+        """When `kind` is done too; None where that cannot be estimated."""
         self.done += kind.bits + self.FIXED
         share = self.done / self.all
         left = (self.now() - self.begun) * (1 / share - 1)
         return left if share >= self.LEAST_SHARE and left >= self.LEAST_SECONDS else None
 
     def after(self, kind):
-        """When `kind` is done too: words that go behind a line, or none where nothing can be said."""
+        """When `kind` is done too: words that go at the end of a line, or none where that cannot be estimated."""
         left = self.seconds_after(kind)
         return "" if left is None else f", about {about(left)} left"
 

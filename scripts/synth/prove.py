@@ -193,7 +193,7 @@ write_aiger -zinit {stem}.aig
         elif "are equivalent" in said or "UNSATISFIABLE" in said:
             verdict = "proved"
         else:
-            verdict = "undecided: " + (said.strip().splitlines() or ["ABC said nothing"])[-1][:100]
+            verdict = "undecided: " + (said.strip().splitlines() or ["ABC printed nothing"])[-1][:100]
     except subprocess.TimeoutExpired:
         verdict = f"undecided: more than {SECONDS} s"
     with open(kept, "w", encoding="utf-8") as file:

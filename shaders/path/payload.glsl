@@ -8,7 +8,7 @@ struct Path {
   vec3 weight;       // of what is found, 1 / samples at the eye; TO_LAMP: what the lamp brings
   uint16_t density;  // of the direction, per solid angle: upper half of a float; 0 if no shadow ray can find the same
 };
-// In place of the density, of which it is none (it would be -0): the ray looks for holes on the way to a lamp.
+// In place of the density, of which it is none (it would be -0): the ray looks for holes on the path to a lamp.
 const uint TO_LAMP = 0x8000u;
 
 float density_of(uint16_t bits) { return uintBitsToFloat(uint(bits) << 16); }

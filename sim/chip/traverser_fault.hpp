@@ -8,7 +8,7 @@
 
 namespace raypool::chip {
 
-/// What, at which address of its memory, and what to do. `tree`: as the host has said where it lies.
+/// What, at which address of its memory, and what to do. `tree`: where it lies, as the host has set it.
 std::string fault_sentence(const TreeFault& fault, const TreeSetup& tree);
 
 }  // namespace raypool::chip

@@ -1,4 +1,4 @@
-// What is said to be looked at by nothing changes no frame.
+// Fields that are reported as unused change no frame.
 #include "config/unused_fields.hpp"
 
 #include <gtest/gtest.h>

@@ -86,7 +86,7 @@ std::string missing_word(const CLI::App& app) {
   return "";
 }
 
-/// "--units is 3: give 1, 2 or 4", of what CLI11 says of a value that is none of those there are; empty otherwise.
+/// "--units is 3: give 1, 2 or 4", from CLI11's message about a value that is not a choice; empty otherwise.
 std::string not_among(const std::string& text) {
   static const std::regex kNotIn(R"((-\S+|\w+): (.*) not in \{(.*)\})");
   std::smatch match;
@@ -96,7 +96,7 @@ std::string not_among(const std::string& text) {
   return fmt::format("{} is {}: give {}", match[1].str(), match[2].str(), choices);
 }
 
-/// "--programs is many: give a number", of what CLI11 says of a value that it cannot convert; empty otherwise.
+/// "--programs is many: give a number", from CLI11's message about a value that it cannot convert; empty otherwise.
 std::string not_converted(const std::string& text) {
   static const std::regex kNot(R"(Could not convert: (-\S+|\w+) = (.*))"), kNumber(R"([+-]?\d+(\.\d*)?)");
   std::smatch match;

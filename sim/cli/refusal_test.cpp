@@ -7,7 +7,7 @@
 namespace raypool {
 namespace {
 
-/// What a program with a few commands says of these words.
+/// What a program with a few commands prints for these words.
 std::string refusal_of(const std::string& words) {
   CLI::App app("a program", "raypool");
   app.require_subcommand(1);

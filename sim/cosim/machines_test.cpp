@@ -1,4 +1,4 @@
-// What the machines of `make cosim` promise, and what is said of a machine that lacks something.
+// What the machines of `make cosim` promise, and what is reported of a machine that lacks something.
 #include "cosim/machines.hpp"
 
 #include <gtest/gtest.h>

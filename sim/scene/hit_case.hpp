@@ -30,7 +30,7 @@ nlohmann::ordered_json to_json(const HitCase& hit_case);
 /// corner is not finite.
 HitCase parse_hit_case(const std::string& line, const std::string& where);
 
-/// What is said of the case of a number.
+/// An answer to the case of a number.
 struct NumberedAnswer {
   uint64_t number = 0;
   HitAnswer answer;

@@ -1,4 +1,4 @@
-// A value of a JSON document that knows where it stands, so that what is wrong with it can be said in one sentence.
+// A value of a JSON document that knows where it stands, so that what is wrong with it can be reported in one sentence.
 #pragma once
 
 #include <cstdint>

@@ -170,7 +170,7 @@ class MtlReader {
     if (!now_.named) return;
     MtlMaterial& material = now_.material;
     if (!now_.kd && now_.map_kd) material.kd = {kTexturedKd, kTexturedKd, kTexturedKd};
-    // These models of light are glass, unless it is said how opaque it is.
+    // These models of light are glass, unless the file states how opaque it is.
     static constexpr std::array<float, 4> kGlass = {4, 6, 7, 9};
     const bool glass = material.illum && std::find(kGlass.begin(), kGlass.end(), *material.illum) != kGlass.end();
     material.transparent = now_.alpha_map || now_.seen_through.value_or(glass);

@@ -17,7 +17,7 @@ struct MtlMaterial {
   bool texture = false, emission = false, transparent = false, extension = false;
   bool spectral = false, xyz = false;  ///< Kd or Ks are given so
 
-  /// What only surfaces have; of numbers that are none nothing.
+  /// What only surfaces have; nothing where a number is malformed.
   struct Map {
     std::string file;  ///< empty: none
     bool clamp = false;

@@ -25,7 +25,7 @@ struct RayCounts {
   /// each, and, if `reflections`, a reflection; so many of these were too deep.
   void count_left_out(uint64_t hits, bool reflections, uint64_t too_deep);
 
-  /// For kernels of others, which cast what they like and have no weights in rays: what these figures say is zero.
+  /// For kernels of others, which cast what they like and have no weights in rays: figures of weights are zero.
   RayCounts without_weights() const;
 
   uint64_t traced() const { return eye.traced + reflection.traced + shadow.traced; }

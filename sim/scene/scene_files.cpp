@@ -51,7 +51,7 @@ std::vector<std::string> scenes_in(const fs::path& folder) {
   return names;
 }
 
-/// Those that a mistyped name may be; the ending of a scene that it lacks is no mistake.
+/// Those that a mistyped name may be; an extension that it lacks does not count as mistyped.
 std::vector<std::string> nearest_scenes(const std::string& given, const std::vector<std::string>& names) {
   std::vector<std::string> shown;
   for (const std::string& name : names)

@@ -24,7 +24,7 @@ bool is_opaque(const SurfaceImage& image) {
 }  // namespace
 
 void SurfaceImages::warn(const std::string& name, const std::string& reason) {
-  // What the reader of the file says names it too.
+  // The message of the file's reader names it too.
   const std::string prefix = path_ + ": ";
   const std::string why = reason.compare(0, prefix.size(), prefix) == 0 ? reason.substr(prefix.size()) : reason;
   warnings_.push_back(

@@ -224,7 +224,7 @@ TEST(ReportComparison, ReportsWhyPixelsDiffer) {
   EXPECT_FALSE(fs::exists(map));
 
   PixelDecisions a(2, 1), b(2, 1);
-  a.hit(0, 1);  // of the pixel that is the same nothing is said
+  a.hit(0, 1);  // nothing is reported of the pixel that is the same
   a.hit(1, 3);
   b.hit(1, 3);
   b.shadow(1, true);

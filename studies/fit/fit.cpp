@@ -98,7 +98,7 @@ Fit fit(const Configuration& base, uint64_t base_cycles, const std::vector<Part>
 std::string shortest_file(const Configuration& configuration) {
   const std::string whole = to_json(configuration);
   Json json = Json::parse(whole);
-  // What one field is without being said may depend on others, so each is tried.
+  // A field's default may depend on other fields, so each is tried.
   for (const ConfigurationField& field : fields()) {
     Json less = json;
     erase(less, pointer_to(field.path));

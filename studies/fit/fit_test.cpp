@@ -152,7 +152,7 @@ TEST(ShortestFile, HasAListInALine) {
 TEST(ShortestFile, ShowsWhatOtherFieldsWouldChange) {
   Configuration configuration;
   configuration.name = "held";
-  configuration.chip.intersection_pool_size = 1024;  // which held_limit follows, unless it is said
+  configuration.chip.intersection_pool_size = 1024;  // which held_limit follows, unless it is set
   expect_same_machine(configuration);
   configuration.slow_unit = SlowUnit::Newton0;  // which the depth of slw follows
   expect_same_machine(configuration);

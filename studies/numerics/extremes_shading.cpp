@@ -100,7 +100,7 @@ void light_on_a_surface(const ExtremeMachine& machine) {
 }
 
 void light_at_the_point(const ExtremeMachine& machine) {
-  // The way to the light is zero: 0 times the infinite reciprocal of its length. An
+  // The vector to the light is zero: 0 times the infinite reciprocal of its length. An
   // ulp before it, the cosine is about 1.
   const Vec3 at{0.5f, 0.25f, -2}, before{0.5f, 0.25f, -2 + 0x1p-22f};
   for (int depth : {1, 2}) {

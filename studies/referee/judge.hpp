@@ -1,4 +1,4 @@
-// Whether what is said of a case is right, by its certificate.
+// Whether an answer to a case is right, by its certificate.
 #pragma once
 
 #include <array>

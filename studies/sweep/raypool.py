@@ -24,7 +24,7 @@ def sentence(text, code):
     """The last line of an error output, without the program's name."""
     lines = [line for line in text.splitlines() if line.strip()]
     if not lines:
-        return f"raypool ended with {'signal' if code < 0 else 'exit code'} {abs(code)} and said nothing"
+        return f"raypool ended with {'signal' if code < 0 else 'exit code'} {abs(code)} and printed nothing"
     return lines[-1].removeprefix("raypool: ")
 
 

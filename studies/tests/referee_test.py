@@ -74,7 +74,7 @@ def check_certificate(case):
             assert error <= fractions.Fraction(2.0 ** -150) or error * 2 ** 24 <= found[0] or found[0] >= LARGEST
         elif found:
             assert found[0] <= 0 or not below(found[0], limit), f"triangle {number} is missing"
-    assert not said, "hits of triangles that there are not"
+    assert not said, "hits of triangles that do not exist"
     if not case["hits"]:
         assert case["miss"] and not case["allowed"]
         return False

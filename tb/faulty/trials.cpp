@@ -41,7 +41,7 @@ void copy_text(std::string_view from, std::array<char, size>& to) {
 struct Worker {
   pid_t pid;
   int pipe;            ///< its end of it is closed when it ends
-  std::FILE* printed;  ///< by the simulator: it says why it stops
+  std::FILE* printed;  ///< by the simulator: it prints why it stops
   Shared* shared;
   size_t trial;
 };
@@ -82,7 +82,7 @@ Worker start(const Trial& trial, size_t index, unsigned seconds_limit) {
   return {pid, ends[0], printed, shared, index};
 }
 
-/// What the simulator said last: the line that begins with %Error, if there is one.
+/// The last message of the simulator: the line that begins with %Error, if there is one.
 std::string last_words(std::FILE* printed) {
   std::rewind(printed);
   std::string words;

@@ -230,8 +230,8 @@ uint32_t draw_followers(const Case& c, const Machine& machine, Drawing& first, C
   return size32(drawings);
 }
 
-/// Draws it, and compares with the native engine what can be. Without a result the tree was none, and the traverser has
-/// said so: then the chip goes on for some time, and nothing comes back.
+/// Draws it, and compares with the native engine what can be. Without a result the tree was malformed, and the
+/// traverser has reported it: then the chip goes on for some time, and nothing comes back.
 std::optional<ChipResult> draw_inside(const Case& c, const Machine& machine, Drawing& drawing, WaitingChip& chip,
                                       Reached& reached) {
   if (!c.after.empty()) drawing.memory().grow(drawing.memory().size() + kRoomForNext);

@@ -43,8 +43,8 @@ class LaunchRecords {
     }
   }
   void contribution_left(uint64_t cycle) { left(cycle); }
-  /// The oldest kernel that runs has ended; its unit has said so far that it exports this many packages, modulo 2^16.
-  /// After what has left in the same cycle.
+  /// The oldest kernel that runs has ended; its unit has reported so far that it exports this many packages, modulo
+  /// 2^16. After what has left in the same cycle.
   void kernel_ended(uint64_t cycle, uint16_t exports) {
     begin(cycle);
     for (uint32_t i = 0; i < count_; ++i) {
@@ -56,8 +56,8 @@ class LaunchRecords {
     }
   }
 
-  /// What has happened in a cycle has been said: the oldest record goes in it, if nothing of it was left in the unit at
-  /// the end of the cycle before.
+  /// All that has happened in a cycle has been reported: the oldest record goes in it, if nothing of it was left in the
+  /// unit at the end of the cycle before.
   void settle(uint64_t cycle) {
     for (uint64_t gone = due(); gone <= cycle && gone != kNever; gone = due()) remove(gone);
   }

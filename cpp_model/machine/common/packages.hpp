@@ -47,7 +47,7 @@ inline bool is_shadow(const Ray& ray) { return (ray[word::kFlags] & kShadowFlag)
 inline bool returns(const Ray& ray) { return (ray[word::kFlags] & (kShadowFlag | kReturnsFlag)) == kReturnsFlag; }
 /// A ray that returns, and any hit ends it.
 inline bool returns_first(const Ray& ray) { return returns(ray) && (ray[word::kFlags] & kFirstFlag) != 0; }
-/// The package of a ray that returns says whether it has met something, whatever the ray had there.
+/// The package of a ray that returns shows whether it has met something, whatever the ray had there.
 inline void set_met(Intersection& package, bool met) {
   package[word::kFlags] = (package[word::kFlags] & ~kMetFlag) | (met ? kMetFlag : 0);
 }

@@ -22,7 +22,7 @@ class MissStatus {
     std::array<uint32_t, kMostMshrs> line{};
     std::array<uint32_t, kMostMshrs> waiters{};  ///< sets of warps
   };
-  /// What is said to an access.
+  /// The answer to an access.
   struct Answer {
     bool match = false;         ///< its line is being fetched
     bool available = false;     ///< a register is free

@@ -3,7 +3,7 @@
 // rtl/traverser/rp_ray_exit.v: what becomes of rays that have visited everything: nothing, a contribution, or a
 // package, for which a hit's triangle is read and what it carries computed.
 //
-// What is said before clock() holds in a whole cycle, and depends on no input of it.
+// Outputs, read before clock(), are valid for the whole cycle and do not depend on its inputs.
 #pragma once
 
 #include <algorithm>

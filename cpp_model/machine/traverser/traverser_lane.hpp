@@ -3,7 +3,7 @@
 // rtl/traverser/rp_traverser_lane.v: a lane of the traverser. Slots for rays, a box pipe, the stacks, what is kept of
 // each ray and its best hit; nodes, leaves and the results of triangle tests come from outside.
 //
-// What is said before clock() holds in a whole cycle, and depends on no input of it.
+// Outputs, read before clock(), are valid for the whole cycle and do not depend on its inputs.
 #pragma once
 
 #include <algorithm>
@@ -61,15 +61,15 @@ class TraverserLane {
   static constexpr uint32_t kLeaf = 1u << 31;  ///< of a reference: it is a leaf's
 
   /// Signals and events of the lanes: sets of lanes, a bit each, so that the code that clocks them goes through those
-  /// few of which something comes, kind by kind. Of a set that is said the bits hold in a whole cycle.
+  /// few of which something comes, kind by kind. The bits of outputs are valid for the whole cycle.
   struct Sets {
     uint64_t cycle = 0;
-    uint32_t test = 0, request = 0, done = 0, slot = 0, fault = 0, nodes = 0, leaves = 0, leaf_room = 0;  ///< said
+    uint32_t test = 0, request = 0, done = 0, slot = 0, fault = 0, nodes = 0, leaves = 0, leaf_room = 0;  ///< outputs
     /// Which have something to offer, end, begin, read, or stacks that go on, without inputs.
     uint32_t offers = 0, ends = 0, stacks = 0, begins = 0, reads = 0;
     uint32_t given = 0;                   ///< a node in the cycle before
     uint32_t leaf_ends = 0;               ///< a leaf's last result came in the cycle before
-    uint32_t faulty = 0;                  ///< that node is none
+    uint32_t faulty = 0;                  ///< that node is malformed
     uint32_t stacked = 0, not_ready = 0;  ///< stacks that went on in the cycle, and those in which no ray may begin
     static constexpr uint32_t kCycles = 16;
     std::array<uint32_t, kCycles> offers_at{}, reads_at{}, given_at{};  ///< [cycle] in turn

@@ -4,7 +4,7 @@
 // bits choose its bank. In a cycle each bank looks up one line, and each lane has one of its two wants looked up, or
 // takes one line for which its ray has waited; so it is given one line at most.
 //
-// In a cycle: choose(), then what comes of it, then clock(). All else that is said holds in the whole cycle.
+// In a cycle: choose(), then what comes of it, then clock(). All other outputs are valid for the whole cycle.
 #pragma once
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 // (MSHRs), and the slots that wait for them. Of the data it knows in which row it stands: it moves as the tags do, and
 // only hardware needs it.
 //
-// All that is said before clock() holds in a whole cycle, and depends on that cycle's inputs only where it takes them.
+// Outputs, read before clock(), are valid for the whole cycle; only those that take that cycle's inputs depend on them.
 #pragma once
 
 #include <array>

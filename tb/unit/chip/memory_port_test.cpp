@@ -211,7 +211,7 @@ class Bench {
     ASSERT_EQ(u_.traverser_response_valid_o, port_.traverser_response_due() == cycle_);
     if (u_.device_response_valid_o) {
       const Expected& expected = device_expects_.front();
-      ASSERT_EQ(u_.device_response_id_o, expected.id) << "not in the order in which they were asked for";
+      ASSERT_EQ(u_.device_response_id_o, expected.id) << "not in the order of the requests";
       ASSERT_EQ(u_.device_response_beat_o, expected.beat);
       ASSERT_EQ(beat_of(u_.device_response_data_o), expected.data);
       device_expects_.pop_front();
@@ -309,7 +309,7 @@ class Bench {
   MemoryRequest device_;
   TreeRequest traverser_;
   bool stays_ = false;                       // the memory has not taken what it is offered
-  std::deque<MemoryPort::Access> accesses_;  // in the order in which they were asked for
+  std::deque<MemoryPort::Access> accesses_;  // in the order of their requests
   std::deque<Answer> answers_;               // of the memory
   std::deque<Expected> device_expects_, traverser_expects_;
   bool quiet_[kUnits] = {true, true, true, true};  // at the end of the cycle before

@@ -290,7 +290,7 @@ class MemAluBench {
     return task.inval ? Opcode::Inval : task.store ? Opcode::St : Opcode::Ld;
   }
 
-  // What the functional core would have said of it.
+  // As the functional core would have set the step.
   void begin_in_class(const MemTask& task) {
     DecodedInstruction decoded;
     decoded.opcode = opcode_of(task);

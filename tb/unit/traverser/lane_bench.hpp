@@ -363,8 +363,8 @@ class LaneBench {
   }
 
   void compare() {
-    ASSERT_FALSE(lane_.fault().valid) << "cycle " << seen.cycles << ": a tree is none";
-    ASSERT_FALSE(u_.fault_valid_o) << "cycle " << seen.cycles << ": a tree is none";
+    ASSERT_FALSE(lane_.fault().valid) << "cycle " << seen.cycles << ": malformed tree";
+    ASSERT_FALSE(u_.fault_valid_o) << "cycle " << seen.cycles << ": malformed tree";
     ASSERT_EQ(u_.slot_valid_o, lane_.slot_valid()) << "cycle " << seen.cycles;
     if (lane_.slot_valid()) {
       ASSERT_EQ(u_.slot_o, lane_.slot()) << "cycle " << seen.cycles;

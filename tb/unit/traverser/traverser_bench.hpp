@@ -537,7 +537,7 @@ class TraverserBench {
   uint32_t turned_ = 0;
   uint64_t requests_since_fault_ = 0;
   uint32_t last_line_ = 0;
-  uint32_t more_lines_ = 0;  // that triangles are said to take, though they take fewer
+  uint32_t more_lines_ = 0;  // that triangles are declared to take, though they take fewer
   uint32_t traces_ = 0;
   std::deque<TreeLine> on_way_;
   uint32_t line_beat_ = 0;
