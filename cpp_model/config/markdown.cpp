@@ -14,7 +14,7 @@ Generated from the one table, `cpp_model/config/parameters.hpp`, by `raypool isa
 
 A configuration is a JSON file: one in `configs/`, or your own. What it leaves out has its default;
 `raypool config FILE` prints all of it. [where.md](../develop/where.md#a-parameter-from-json-to-its-module) shows a
-parameter's way to the module that uses it, and adds one.
+parameter's path to the module that uses it, and adds one.
 
 | in the file | in the Verilog | values | default | what it is |
 | --- | --- | --- | --- | --- |

@@ -49,7 +49,7 @@ class Check:
             fates = ("blocked", "free")
             if life.fate != "dropped":
                 self.note(
-                    f"{name}, way to the light", life.fate, fates[expected.free], life.fate == fates[expected.free]
+                    f"{name}, path to the light", life.fate, fates[expected.free], life.fate == fates[expected.free]
                 )
         elif life.fate in ("hit", "missed"):
             self.hit(name, life, expected.hit, host)

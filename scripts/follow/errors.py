@@ -18,7 +18,7 @@ def run(command):
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         said = (done.stderr or done.stdout).strip()
-        raise FollowError(said or f"{command[0]} ended with {done.returncode}, and said nothing")
+        raise FollowError(said or f"{command[0]} ended with {done.returncode}, and printed nothing")
     return done.stdout
 
 
@@ -26,4 +26,4 @@ def build(command):
     """Runs what may take minutes. What it prints meanwhile is shown, but is no part of what follow prints."""
     done = subprocess.run([str(word) for word in command], stdout=2, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
-        raise FollowError(done.stderr.strip() or f"{command[0]} ended with {done.returncode}, and said nothing")
+        raise FollowError(done.stderr.strip() or f"{command[0]} ended with {done.returncode}, and printed nothing")

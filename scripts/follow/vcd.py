@@ -3,7 +3,7 @@
 A waveform is written after each edge of the clock. At a rising edge the registers have their new values already, which
 are those of the cycle that begins, while the inputs still stand as they were in the cycle that ends. So the outputs of
 cycle c are read after the edge before it, and its inputs after the edge that ends it. Cycle 0 is that of start_i.
-What is inside is named by its way from the chip, with points between instances, and [*] for all of a row of them.
+What is inside is named by its path from the chip, with dots between instances, and [*] for all of a row of them.
 """
 import bisect
 import re
@@ -84,7 +84,7 @@ def header(lines):
 
 
 def name_in_chip(scopes, name):
-    """Its way from the innermost scope of this name; empty outside of it."""
+    """Its path from the innermost scope of this name; empty outside of it."""
     if b"rp_chip" not in scopes:
         return ""
     return b".".join((*scopes[len(scopes) - scopes[::-1].index(b"rp_chip") :], name)).decode()

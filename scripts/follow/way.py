@@ -91,7 +91,7 @@ def way_picture(journey, tree, materials):
     ends = [ends_of(life) for life in lives]
     rays = [point for pair in ends for point in pair]
     view = View([corner for triangle in tree.triangles for corner in triangle.corners] + rays, rays)
-    drawn = Picture(round(view.height) + 84, "raypool: the way of the light through the scene")
+    drawn = Picture(round(view.height) + 84, "raypool: the path of the light through the scene")
     drawn.text(16, 24, view.title(), "part")
     draw_triangles(drawn, view, tree, materials)
     lines = [(view.place(begin), view.place(end)) for begin, end in ends]
