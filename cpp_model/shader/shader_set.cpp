@@ -285,7 +285,7 @@ class Folder : public ShaderSet {
     files.push_back({path, spirv_of(path)});
     const Module module(files.back().words, path);
     if (module.stage() != kStages[stage].model)
-      throw InputError(fmt::format("{}: it is no {} shader, as its ending says", path, kStages[stage].name));
+      throw InputError(fmt::format("{}: not the {} shader that its extension promises", path, kStages[stage].name));
     reflect(module);
     files.back().has_record = std::any_of(module.variables().begin(), module.variables().end(), [](const auto& one) {
       return one.second.storage == spv::StorageClass::ShaderRecordBufferKHR;

@@ -121,7 +121,7 @@ void check(const SimOptions& options, Engine engine) {
                     options.engine));
   }
   if (!options.error.empty() && !options.time.empty())
-    throw InputError("--error says how long it takes, --time how large the error is: give one of them");
+    throw InputError("--error determines the time, and --time the error: give one of them");
 }
 
 /// Settings without effect are refused; those of a file, which may be written for other runs as well, are reported.
