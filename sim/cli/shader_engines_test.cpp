@@ -64,6 +64,17 @@ class ShaderEngines : public testing::Test {
     return options;
   }
 
+  /// The folder of a set whose ray generation shader does nothing but store this colour.
+  std::string set_storing(const std::string& colour) const {
+    const fs::path set = folder_ / fmt::format("stores-{}", std::hash<std::string>()(colour));
+    fs::create_directories(set);
+    const char* begin = "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"raypool.glsl\"\n";
+    std::ofstream(set / "a.rgen") << begin << "void main() { imageStore(raypool_picture, ivec2(gl_LaunchIDEXT.xy), "
+                                  << colour << "); }\n";
+    std::ofstream(set / "a.rchit") << begin << "void main() {}\n";
+    return set.string();
+  }
+
   /// The picture's bytes; nothing where it is refused, which fails.
   std::string drawn(SimOptions options, const std::string& engine) const {
     options.engine = engine;
@@ -200,14 +211,7 @@ TEST_F(ShaderEngines, ClosestHitShadersThatWaitForEachOtherDrawWhatALoopDraws) {
 
 /// The sets look at that themselves, and store green where it is so.
 TEST_F(ShaderEngines, AnyHitShadersCulledSidesAndTheTableOfShadersDoWhatTheyShould) {
-  const fs::path green = folder_ / "green";
-  fs::create_directories(green);
-  const char* begin = "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"raypool.glsl\"\n";
-  std::ofstream(green / "a.rgen") << begin
-                                  << "void main() { imageStore(raypool_picture, ivec2(gl_LaunchIDEXT.xy), "
-                                     "vec4(0, 1, 0, 1)); }\n";
-  std::ofstream(green / "a.rchit") << begin << "void main() {}\n";
-  const std::string expected = drawn(options(green.string(), "cornell"), "native");
+  const std::string expected = drawn(options(set_storing("vec4(0, 1, 0, 1)"), "cornell"), "native");
   ASSERT_FALSE(expected.empty());
   for (const char* set : {"layers", "table", "by_material", "accumulated"}) {
     const SimOptions checked = options(fmt::format("cpp_model/shader/cases/{}", set), "cornell");
@@ -243,14 +247,8 @@ TEST_F(ShaderEngines, AClockCountsSamples) {
   SimOptions clock = options("cpp_model/shader/cases/clock", "cornell");
   clock.samples = 3;
   equal_pictures(clock, {"native", "functional", "model"});
-  const fs::path sum = folder_ / "sum";
-  fs::create_directories(sum);
-  const char* begin = "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"raypool.glsl\"\n";
-  std::ofstream(sum / "a.rgen") << begin
-                                << "void main() { imageStore(raypool_picture, ivec2(gl_LaunchIDEXT.xy), vec4(0.75, "
-                                   "0.75, 3 * (gl_LaunchIDEXT.x & 1), 1)); }\n";
-  std::ofstream(sum / "a.rchit") << begin << "void main() {}\n";
-  EXPECT_TRUE(drawn(clock, "native") == drawn(options(sum.string(), "cornell"), "native"));
+  const std::string sum = set_storing("vec4(0.75, 0.75, 3 * (gl_LaunchIDEXT.x & 1), 1)");
+  EXPECT_TRUE(drawn(clock, "native") == drawn(options(sum, "cornell"), "native"));
 }
 
 TEST_F(ShaderEngines, EachFrameBeginsWithTheBuffersOfTheSet) {
