@@ -56,7 +56,8 @@ HARDWARE = LEVELS[-1].name
 OF_THE_RUN = ("command", "engine", "boundary", "hits", "wall_seconds", "simulation_seconds", "simulated_per_second")
 # Options of raypool sim that are passed on; those with a default name the folder.
 DEFAULTS = {"scene": "room", "config": "8w8c", "units": "1", "size": "200x200", "depth": "3"}
-OTHERS = ("set", "traverser", "view", "camera", "eye", "look-at", "up", "fov", "light", "detail")
+OTHERS = ("set", "traverser", "view", "camera", "eye", "look-at", "up", "fov", "light", "detail", "shaders",
+          "samples")  # fmt: skip
 
 
 class FidelityError(Exception):
@@ -237,12 +238,19 @@ def figures(run, reference, base):
     }
 
 
+def shaders_of(report):
+    """What of the set is found in the results; nothing of the built-in kernels."""
+    shaders = report.get("shaders")
+    return {"shaders": {name: shaders[name] for name in ("folder", "samples")}} if shaders else {}
+
+
 def summary(runs, reference, base):
     report = reference.report
     return {
         "raypool": report["raypool"],
         "command": sys.argv,
         **{name: report[name] for name in ("scene", "size", "depth", "config", "units", "traverser")},
+        **shaders_of(report),
         "reference": reference.level.name,
         "speed_up_over": base.level.name,
         "levels": [figures(run, reference, base) for run in runs],
@@ -254,10 +262,13 @@ def summary(runs, reference, base):
 
 def title(found):
     """'room, 331494 triangles, 320x320, depth 3, 8w8c, 1 compute unit'"""
-    units = found["units"]
+    units, shaders = found["units"], found.get("shaders")
+    drawn = f", {shaders['folder']}" if shaders else ""
+    if shaders and shaders["samples"] > 1:
+        drawn += f" with {shaders['samples']} samples"
     return (f"{found['scene']['name']}, {found['scene']['triangles']} triangles, {found['size']['width']}x"
             f"{found['size']['height']}, depth {found['depth']}, {found['config']}, {units} compute unit"
-            f"{'s' if units > 1 else ''}")
+            f"{'s' if units > 1 else ''}{drawn}")
 
 
 def cell(value, form, scale=1):
@@ -386,7 +397,8 @@ def chosen_levels(text):
 def parser():
     options = Parser(prog="fidelity", description=__doc__.splitlines()[0], allow_abbrev=False)
     names = ",".join(level.name for level in LEVELS)
-    options.add_argument("--levels", type=chosen_levels, default=names, help=f"default: {names}")
+    options.add_argument("--levels", type=chosen_levels,
+                         help=f"default: {names}; of shader sets, those that know them")  # fmt: skip
     options.add_argument("--runs", type=positive, default=1, help="times that each level draws; medians are printed")
     options.add_argument("--out", help="folder (default: build/fidelity/ and the frame's name)")
     for name in (*DEFAULTS, *OTHERS):
@@ -425,7 +437,9 @@ def publish(levels, out, folder):
 
 def measure(arguments, options, out, folder):
     """In `folder`, a new one in `out`."""
-    runs = draw_all(arguments.levels, arguments, options, folder)
+    unknown = (["estimate"] if arguments.shaders else []) + (["sampled"] if arguments.samples else [])
+    levels = arguments.levels or [level for level in LEVELS if level.name not in unknown]
+    runs = draw_all(levels, arguments, options, folder)
     reference = runs[-1]
     slowest = max(runs, key=lambda run: statistics.median(run.walls))
     base = next((run for run in runs if run.level.name == HARDWARE), slowest)
@@ -439,7 +453,7 @@ def measure(arguments, options, out, folder):
         file.write("\n")
     plot(found, folder / "fidelity.svg")
     print_tables(found)
-    publish(arguments.levels, out, folder)
+    publish(levels, out, folder)
 
 
 def run_study(study, arguments, measured):

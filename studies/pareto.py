@@ -3,10 +3,10 @@
 
     studies/pareto.py [--machines "24 20-flush-newton1 24-fit ..."] [--no-area] [--out FOLDER] [options of raypool sim]
 
-Each picture is held against the frame in double precision. Prints a table and leaves pareto.json
-(docs/use/speed-and-accuracy.md), pareto.svg, and in machines/ each machine's picture and the configuration of those
-that were fitted, in FOLDER. `make pareto` calls it. RAYPOOL names the program, default raypool in the build folder
-(BUILD).
+Each picture is held against the frame in double precision, that of a shader set against that of the full machine.
+Prints a table and leaves pareto.json (docs/use/speed-and-accuracy.md), pareto.svg, and in machines/ each machine's
+picture and the configuration of those that were fitted, in FOLDER. `make pareto` calls it. RAYPOOL names the program,
+default raypool in the build folder (BUILD).
 """
 import argparse
 import contextlib
@@ -38,8 +38,9 @@ MACHINES = (
 # The fit of the smallest machine with a picture that passes, whichever that turns out to be.
 SMALLEST_FIT = "smallest-fit"
 SUBNORMALS, SLOW_UNIT = "subnormals", "slow_unit"
-# What all pictures are held against, and its folder.
-REFERENCE = "double precision"
+# What all pictures are held against: of the built-in kernels, of shader sets.
+REFERENCES = ("double precision", "full single precision")
+REFERENCE = "reference"  # its folder
 
 
 class Machine(typing.NamedTuple):
@@ -140,11 +141,16 @@ def without(options, *names):
     return [word for word in options if not word.startswith(tuple(f"--{name}=" for name in names))]
 
 
-def draw_reference(options, folder):
-    """It has neither arithmetic nor hits of a machine."""
-    say(f"pareto: {REFERENCE}: drawing")
-    run_sim([*without(options, "set", "traverser"), "--engine", "native", "--precision", "double"],
-            folder / "drawn" / REFERENCE)  # fmt: skip
+def reference_of(arguments):
+    return REFERENCES[bool(arguments.shaders)]
+
+
+def draw_reference(arguments, options, folder):
+    """In double precision it has neither arithmetic nor hits of a machine."""
+    say(f"pareto: {reference_of(arguments)}: drawing")
+    how = ([*options, *(f"--set={field}" for field in full().fields)] if arguments.shaders else
+           [*without(options, "set", "traverser"), "--precision", "double"])  # fmt: skip
+    run_sim([*how, "--engine", "native"], folder / "drawn" / REFERENCE)
 
 
 def draw(row, options, folder):
@@ -154,7 +160,7 @@ def draw(row, options, folder):
     if row.machine.fitted:
         say(f"pareto: {name}: what the frame needs of it")
         config = folder / "machines" / f"{name}.json"
-        call("fit", *options, *fields, "--quiet", "--out", config)
+        call("fit", *without(options, "samples"), *fields, "--quiet", "--out", config)
         # Its own name is that of a file that the user may take elsewhere.
         options = without(options, "config", "set", "traverser")
         fields = [f"--config={config}"]
@@ -196,8 +202,9 @@ def summary(rows, arguments):
         "raypool": report["raypool"],
         "command": sys.argv,
         **{name: report[name] for name in ("scene", "size", "depth", "units")},
+        **fidelity.shaders_of(report),
         "config": pathlib.Path(arguments.config).stem,
-        "reference": REFERENCE,
+        "reference": reference_of(arguments),
         "criterion": rows[0].criterion,
         "smallest": least[0] and least[0].machine.name,
         "smallest_fitted": least[1] and least[1].machine.name,
@@ -387,7 +394,7 @@ def publish(out, folder, names):
 def compare_machines(arguments, options, out, folder):
     """In `folder`, a new one in `out`."""
     (folder / "machines").mkdir()
-    draw_reference(options, folder)
+    draw_reference(arguments, options, folder)
     wanted = chosen_machines(arguments.machines)
     rows = [Row(machine) for machine in (full(), *(machine_of(name) for name in wanted if name != SMALLEST_FIT))]
     for row in rows:

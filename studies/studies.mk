@@ -9,23 +9,23 @@ REPORT := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=studies:scripts $(PYTHON) -
 FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 
-#: variables of make fidelity: those of the frame, from SCENE to DETAIL
+#: variables of make fidelity: those of the frame, from SCENE to DETAIL; SHADERS, SPP
 #:   LEVELS="native model ..."     only these                                  all
 #:   RUNS=N                        times that each draws                       1
 #:   OUT=FOLDER
 fidelity: checked-fidelity setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error
-	@$(PYTHON) studies/fidelity.py $(call options,$(FRAME) LEVELS RUNS OUT) $(ARGS)
+	@$(PYTHON) studies/fidelity.py $(call options,$(FRAME) SHADERS SPP LEVELS RUNS OUT) $(ARGS)
 
 #: of make intervals:  ARGS="--samples 50 --traverser hardware": seeds of each frame, 200 if not given; else static
 intervals: setup-sim program ## do the intervals of ENGINE=sampled have the coverage that they claim?
 	@python3 studies/intervals.py $(call options,OUT) $(ARGS)
 
-#: variables of make pareto: those of the frame
+#: variables of make pareto: those of the frame; SHADERS, SPP
 #:   MACHINES="24 20-flush ..."    only these                                  what one chooses among
 #:   JOBS=N                        blocks that are mapped at a time            all cores
 #:   OUT=FOLDER
 pareto: checked-pareto setup-sim setup-synth program ## area against picture error: arithmetic modes and fits of a frame
-	@$(PYTHON) studies/pareto.py $(call options,$(FRAME) MACHINES JOBS OUT) $(ARGS)
+	@$(PYTHON) studies/pareto.py $(call options,$(FRAME) SHADERS SPP MACHINES JOBS OUT) $(ARGS)
 
 #: variables of make fit: those of the frame, and SHADERS
 #:   SLOWER=N%                     cycles that the whole may take more         1%
@@ -53,7 +53,12 @@ sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/use/sw
 report: setup-sim setup-report program ## sweeps, runs and synthesis reports as one page (docs/use/page.md)
 	@$(REPORT) $${FROM:+--from $$FROM} $(call options,OUT) $(ARGS)
 
-#: variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  OUT=FOLDER
+#: variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  OUT=FOLDER;  with SHADERS, what each
+#:   mode does to that frame: those of the frame, SPP
+ifneq (,$(SHADERS))
+numerics: setup-sim program
+	@$(RAYPOOL) numerics $(call options,SHADERS SPP SCENE SIZE DEPTH CONFIG SET $(LOOK) OUT) $(ARGS)
+else
 # The Slw lane does not depend on fma: its newton variants are not synthesised twice.
 numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arithmetic mode, what they do, its cost
 	@$(RAYPOOL) errors
@@ -65,6 +70,7 @@ numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arit
 	@echo
 	@$(RAYPOOL) numerics $(call options,OUT) $(ARGS)
 	@$(PYTHON) studies/numerics_plots.py "$${OUT:-$(BUILD)/out/numerics}"
+endif
 
 #: variables of make estimates:  MACHINES=N: random ones;  SEED=N
 estimates: setup-sim program ## how far engine estimate is off, on random machines and frames

@@ -1,5 +1,6 @@
 #include "cli/command_options.hpp"
 
+#include "cli/commands.hpp"
 #include "cli/help.hpp"
 #include "scene/native_renderer.hpp"
 
@@ -49,6 +50,14 @@ void add_shaders(CLI::App& app, std::string& shaders) {
                  "kernels")
       ->type_name("FOLDER")
       ->group(option_group::kScene);
+}
+
+void add_samples(CLI::App& app, int& samples) {
+  app.add_option("--samples", samples,
+                 "with --shaders: frames that add up to the picture, each with its number; the shaders weigh them")
+      ->group(option_group::kScene)
+      ->check(CLI::Range(1, kMostSamples))
+      ->capture_default_str();
 }
 
 void add_depth(CLI::App& app, int& depth) {

@@ -19,6 +19,7 @@ CLI::Option* add_threads(CLI::App& app, uint32_t& threads, const std::string& wh
 void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, ViewWords& look,
                double& detail);
 void add_shaders(CLI::App& app, std::string& shaders);
+void add_samples(CLI::App& app, int& samples);
 void add_depth(CLI::App& app, int& depth);
 void add_units(CLI::App& app, int& units);
 void add_traverser(CLI::App& app, std::string& traverser);

@@ -332,4 +332,22 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   return frame;
 }
 
+FrameBuffer render_samples(const Scene& scene, const MemoryImage& image, const Tracer& tracer, NativeOptions options,
+                           int samples, NativeStatistics* statistics) {
+  std::optional<FrameBuffer> picture;
+  for (int sample = 0; sample < samples; ++sample) {
+    options.change_arguments = [sample](std::array<uint32_t, kArguments>& arguments) {
+      arguments[argument::kSample] = static_cast<uint32_t>(sample);
+    };
+    NativeStatistics of_frame;
+    FrameBuffer frame = render_native(scene, image, tracer, options, &of_frame);
+    if (statistics != nullptr) statistics->add(of_frame);
+    if (picture)
+      picture->add(frame);
+    else
+      picture = std::move(frame);
+  }
+  return std::move(picture.value());
+}
+
 }  // namespace raypool

@@ -101,4 +101,9 @@ struct NativeStatistics {
 FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tracer& tracer,
                           const NativeOptions& options, NativeStatistics* statistics = nullptr);
 
+/// The sum of as many frames, 1 or more, each with its number as the kernels' argument kSample; each begins with the
+/// image's memory. `options` without change_arguments; `statistics` are of all frames.
+FrameBuffer render_samples(const Scene& scene, const MemoryImage& image, const Tracer& tracer, NativeOptions options,
+                           int samples, NativeStatistics* statistics = nullptr);
+
 }  // namespace raypool

@@ -18,6 +18,13 @@ struct NumericsOptions {
   std::string config = "4w4c";  ///< the base, to which each mode's arithmetic is applied
   std::vector<std::string> set;
   std::string mode = "all";  ///< or one of numerics::arithmetic_modes()
+  std::string shaders;       ///< the shader set whose frame is drawn in each mode; empty: three scenes by the kernels
+  std::string option_of_shaders;  ///< an option that was given and is for `shaders` alone; empty: none
+  std::string scene = "cornell";
+  double detail = 1;
+  std::string view;
+  ViewWords look;
+  int samples = 1;
   std::string size = "256x256";
   int depth = 3;
   std::string out;                ///< folder; empty: out/numerics beside the executable

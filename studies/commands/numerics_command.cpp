@@ -15,6 +15,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "commands/commands.hpp"
+#include "commands/shader_modes.hpp"
 #include "isa/did_you_mean.hpp"
 #include "numerics/cost.hpp"
 #include "numerics/extreme_parts.hpp"
@@ -263,9 +264,17 @@ int write_configurations(const NumericsOptions& options) {
 }  // namespace
 
 int numerics_command(const NumericsOptions& options) {
+  if (options.shaders.empty() && !options.option_of_shaders.empty()) {
+    throw InputError(
+        fmt::format("numerics draws scenes of its own with the built-in kernels: leave {} out, or give --shaders too",
+                    options.option_of_shaders));
+  }
+  if (!options.shaders.empty() && (options.extremes || options.catalogue || !options.configurations.empty()))
+    throw InputError("--shaders draws a frame in each mode: leave --extremes, --catalogue and --configurations out");
   if (!options.configurations.empty()) return write_configurations(options);
   if (options.catalogue) return list_extremes();
-  return options.extremes ? extremes_command(options) : trade_command(options);
+  if (options.extremes) return extremes_command(options);
+  return options.shaders.empty() ? trade_command(options) : shader_modes_command(options, chosen_modes(options.mode));
 }
 
 }  // namespace raypool

@@ -43,9 +43,9 @@ void StudyCommands::add_numerics_command() {
   numerics_app->add_option("--mode", numerics_.mode, "all, or one: ieee-exact, flush-newton1, ...")
       ->type_name("NAME")
       ->capture_default_str();
-  numerics_app->add_option("--size", numerics_.size, "of the pictures, in pixels")
-      ->type_name("WxH")
-      ->capture_default_str();
+  add_scene(*numerics_app, numerics_.scene, numerics_.size, numerics_.view, numerics_.look, numerics_.detail);
+  add_shaders(*numerics_app, numerics_.shaders);
+  add_samples(*numerics_app, numerics_.samples);
   numerics_app->add_option("--depth", numerics_.depth, "of the pictures' rays")
       ->check(CLI::Range(1, 254))
       ->capture_default_str();
@@ -65,7 +65,12 @@ void StudyCommands::add_numerics_command() {
   numerics_app->add_option("--configurations", numerics_.configurations, "only write a configuration file of each mode")
       ->type_name("FOLDER");
   numerics_app->add_flag("--quiet", numerics_.quiet, "no progress");
-  numerics_app->callback([this] { code_ = numerics_command(numerics_); });
+  numerics_app->callback([this, numerics_app] {
+    for (const char* option :
+         {"--scene", "--view", "--camera", "--eye", "--look-at", "--up", "--fov", "--light", "--detail", "--samples"})
+      if (numerics_app->count(option) > 0) numerics_.option_of_shaders = option;
+    code_ = numerics_command(numerics_);
+  });
 }
 
 void StudyCommands::add_significands_command() {

@@ -161,6 +161,16 @@ class Runs(unittest.TestCase):
         self.assertNotEqual(picture, (self.out / "machines/24.png").read_bytes())
         self.assertEqual((self.out / "machines/24-fit.png").read_bytes(), (self.out / "machines/24.png").read_bytes())
 
+    def test_pictures_of_shaders_stand_beside_the_full_machines(self):
+        self.run_it("--no-area", "--machines", "11 24-fit", "--shaders", "preview", "--samples", "2")
+        found = json.loads((self.out / "pareto.json").read_text())
+        self.assertEqual([error.message for error in schema().iter_errors(found)], [])
+        self.assertEqual(found["reference"], "full single precision")
+        self.assertEqual(found["shaders"], {"folder": "preview", "samples": 2})
+        rows = {row["machine"]: row["picture"] for row in found["machines"]}
+        self.assertEqual((rows["24"]["differ"], rows["24-fit"]["differ"]), (0, 0))
+        self.assertGreater(rows["11"]["differ"], 0)
+
     def refuses(self, sentence, *words, **environment):
         """One line after what is progress, nothing is left."""
         done = self.run_it(*words, code=1, **environment)
