@@ -46,13 +46,17 @@ export CUS ?= 1
 #:                                 1: 0:20000; ENGINE=model
 #:   HITS=own|embree               ENGINE=native: the hits to draw with        own
 #:   THREADS=N                     ENGINE=native, estimate, sampled            all cores
-#:   ERROR=N%  or  TIME=Ns         ENGINE=sampled: what may be afforded        ERROR=2%
+#:   ERROR=N%  or  WITHIN=Ns       chooses an engine by what may be afforded, or is of ENGINE=sampled
 #:   SEED=N                        of what is random: ENGINE=sampled, cosim ...
 export SEED ?= 1
 # Recipes read values from the environment. Not so ARGS: make writes them into the recipe, and no make inside has them.
 unexport ARGS
 # Those of NAMES that the command line has.
 said = $(foreach name,$1,$(if $(findstring command,$(origin $(name))),$(name)))
+# These leave the engine to the program.
+ifneq (,$(and $(call said,ERROR WITHIN),$(filter file,$(origin ENGINE))))
+  ENGINE :=
+endif
 
 # What is mistyped must not be ignored. What an outer make hands on is not looked at; tools have variables of their own.
 TOOLS := CC CXX CFLAGS CXXFLAGS LDFLAGS VERILATOR CCACHE_% CMAKE_% RAYPOOL_%
@@ -84,8 +88,9 @@ RAYPOOL := $(BUILD)/raypool
 # Benches with runs of hours, which are worth an optimised build.
 OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/benches ON \
   -DRAYPOOL_BENCHES_OPTIMISED=ON
-# Where nothing is built yet, make sim compiles only what draws. The engines estimate and sampled are studies.
-DRAWS := $(if $(or $(wildcard $(RAYPOOL)),$(filter estimate sampled,$(ENGINE))),raypool,raypool-sim)
+# Where nothing is built yet, make sim compiles only what draws. The engines estimate and sampled are studies, and
+# without an engine it may be one of these.
+DRAWS := $(if $(or $(wildcard $(RAYPOOL)),$(filter estimate sampled,$(or $(ENGINE),estimate))),raypool,raypool-sim)
 # built PROGRAM,WORDS: builds it, and prints WORDS where it is not there yet.
 built = @[ -x $(BUILD)/$1 ] || echo 'building $2'; scripts/build.sh $(BUILD) $1
 # options NAMES: of each variable that is set the option, --look-at for LOOK_AT, --units for CUS, --samples for SPP. A
@@ -151,12 +156,11 @@ WITH_CONFIG := run cosim unit synth synth-replay synth-prove
 checked-%:
 	@scripts/check_values.sh $* $(if $(filter $*,$(WITH_CONFIG)),CONFIG)
 
-# An environment may hold a TIME of its own, for time(1).
 sim: checked-sim setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
 	$(call built,$(DRAWS),what draws; the first time this takes about two minutes)
 	@RAYPOOL=$(BUILD)/$(DRAWS) $(UNIT_OF_ENGINE) $(OF_FRAME)
-	@$(BUILD)/$(DRAWS) sim $(call options,$(FRAME) SHADERS SPP ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
-	  $(if $(filter sampled,$(ENGINE)),SEED)) $(WAVES_FLAG) $(TRACE_FLAG) $(ARGS)
+	@$(BUILD)/$(DRAWS) sim $(call options,$(FRAME) SHADERS SPP ENGINE BOUNDARY HITS OUT THREADS \
+	  $(call said,ERROR WITHIN) $(if $(filter sampled,$(ENGINE)),SEED)) $(WAVES_FLAG) $(TRACE_FLAG) $(ARGS)
 
 #: variables of make compare:  A=FOLDER|REPORT  B=FOLDER|REPORT
 compare: setup-sim program ## two runs beside each other: A=FOLDER_OR_REPORT B=...

@@ -8,7 +8,7 @@
 namespace raypool {
 namespace {
 
-constexpr EstimatingEngines kEstimating = {sampled::kSampler, estimate::estimate_frame};
+constexpr EstimatingEngines kEstimating = {sampled::kSampler, estimate::error_of, estimate::estimate_frame};
 
 struct Commands {
   Commands(CLI::App& app, const std::vector<std::string>& words, int& code)

@@ -65,8 +65,8 @@ refuses_sim "an error for an engine without a sample" "functional draws no sampl
 refuses_sim "an error that is no share" "--error is '2 percent': it must be a number above 0, at most 50, and %" \
   --engine sampled --error "2 percent"
 refuses_sim "an error of nothing" "--error is '0%'" --engine sampled --error 0%
-refuses_sim "no time" "--time is '-1s': it must be a number above 0" --engine sampled --time=-1s
-refuses_sim "error and time" "give one of them" --engine sampled --error 2% --time 3s
+refuses_sim "no time" "--within is '-1s': it must be a number above 0" --engine sampled --within=-1s
+refuses_sim "error and time" "give one of them" --engine sampled --error 2% --within 3s
 refuses_sim "a sample's trace" "engine sampled leaves no trace" --engine sampled --trace :
 refuses_sim "no such scene" "nosuchscene" --scene nosuchscene
 refuses_sim "scene of an unknown format" "warps.json: .* \.obj, \.gltf, \.glb or \.ply" --scene "$folder/warps.json"

@@ -33,6 +33,10 @@ struct Figures : Estimates {
 /// An engine that draws a sample (studies/sampled/sampled_frame.hpp).
 struct Sampler {
   std::vector<std::vector<PixelTile>> (*blocks_of)(const Configuration& configuration, uint32_t width, uint32_t height);
+  /// Of the frame's tiles, those that the smallest sample simulates; 1: there is none that is quicker than the frame.
+  double (*least_share)(const Configuration& configuration, uint32_t width, uint32_t height);
+  /// About how long the model takes for the whole frame on one core: from a few of its blocks.
+  double (*seconds)(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work);
   Figures (*draw)(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work, const Wanted& wanted);
 };
 
@@ -43,6 +47,8 @@ namespace raypool {
 /// Engines that estimate: they study the machine.
 struct EstimatingEngines {
   sampled::Sampler sampled;
+  /// As Estimates::error(), of every frame on such a machine.
+  double (*estimate_error)(const Configuration& configuration);
   /// Engine `estimate` (studies/estimate/estimated_frame.hpp).
   Estimates (*estimate)(const Configuration& configuration, uint32_t units, const Scene& scene,
                         const MemoryImage& image, const Tracer& tracer, const NativeOptions& native,

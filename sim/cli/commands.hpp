@@ -52,9 +52,10 @@ struct SimOptions {
   int samples = 1;       ///< with `shaders`: frames whose contributions add up, 1 .. kMostSamples
   uint32_t threads = 0;  ///< of engines native, estimate and sampled; 0: as many as the machine has cores
   /// Of engine sampled: "2%" of the cycles, half of their interval, or "10s" for the whole command; one or none.
-  std::string error, time;
-  uint64_t seed = 0;  ///< of engine sampled; 0: as 1
-  double detail = 1;  ///< of a built-in scene, 0.01 .. 16
+  std::string error, within;
+  bool choose_engine = false;  ///< `error` or `within` decides between estimate, sampled and model, not `engine`
+  uint64_t seed = 0;           ///< of engine sampled; 0: as 1
+  double detail = 1;           ///< of a built-in scene, 0.01 .. 16
   bool waves = false;
   std::string trace;                    ///< window of cycles (trace::parse_window()); empty: no trace
   bool modules = false;                 ///< print the modules of the chip, and draw nothing

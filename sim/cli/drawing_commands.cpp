@@ -27,17 +27,15 @@ void DrawingCommands::add_sim_command() {
   add_engine_options(*sim_app);
   add_sampling_options(*sim_app);
   add_output_options(*sim_app);
-  sim_app->callback([this] { code_ = sim_command(sim_); });
+  sim_app->callback([this, sim_app] {
+    sim_.choose_engine = sim_app->count("--engine") == 0 && (!sim_.error.empty() || !sim_.within.empty());
+    code_ = sim_command(sim_);
+  });
 }
 
 void DrawingCommands::add_shader_options(CLI::App& sim_app) {
   add_shaders(sim_app, sim_.shaders);
-  sim_app
-      .add_option("--samples", sim_.samples,
-                  "with --shaders: frames that add up to the picture, each with its number; the shaders weigh them")
-      ->group(option_group::kScene)
-      ->check(CLI::Range(1, kMostSamples))
-      ->capture_default_str();
+  add_samples(sim_app, sim_.samples);
 }
 
 void DrawingCommands::add_engine_options(CLI::App& sim_app) {
@@ -64,10 +62,16 @@ void DrawingCommands::add_engine_options(CLI::App& sim_app) {
 }
 
 void DrawingCommands::add_sampling_options(CLI::App& sim_app) {
-  sim_app.add_option("--error", sim_.error, "sampled: half of the 95% interval of the cycles (default: 2%)")
+  sim_app
+      .add_option("--error", sim_.error,
+                  "half of the 95% interval of the cycles: of sampled (default: 2%), or without --engine of the "
+                  "quickest that suffices, estimate, sampled or model")
       ->type_name("PERCENT")
       ->group(option_group::kSampling);
-  sim_app.add_option("--time", sim_.time, "sampled: as many tiles as the command has time for, instead of --error")
+  sim_app
+      .add_option("--within", sim_.within,
+                  "instead of --error, time for the whole command: sampled draws as many tiles as it allows; without "
+                  "--engine, the engine with the least error is chosen")
       ->type_name("SECONDS")
       ->group(option_group::kSampling);
   sim_app.add_option("--seed", sim_.seed, "sampled: of the random choice of tiles (default: 1)")

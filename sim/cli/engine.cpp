@@ -22,19 +22,22 @@ namespace raypool {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// In the order of Engine.
+const std::vector<std::string> kEngines = {"native", "estimate", "functional", "sampled", "model", "rtl", "lockstep"};
+
+}  // namespace
+
 Engine parse_engine(const std::string& name) {
-  if (name == "native") return Engine::Native;
-  if (name == "estimate") return Engine::Estimate;
-  if (name == "functional") return Engine::Functional;
-  if (name == "sampled") return Engine::Sampled;
-  if (name == "model") return Engine::Model;
-  if (name == "rtl") return Engine::Rtl;
-  if (name == "lockstep") return Engine::Lockstep;
+  for (size_t i = 0; i < kEngines.size(); ++i)
+    if (name == kEngines[i]) return static_cast<Engine>(i);
   throw InputError(
       fmt::format("there is no engine '{}'{}", name,
-                  did_you_mean(name, {"native", "estimate", "functional", "sampled", "model", "rtl", "lockstep"},
-                               "use native, estimate, functional, sampled, model, rtl or lockstep")));
+                  did_you_mean(name, kEngines, "use native, estimate, functional, sampled, model, rtl or lockstep")));
 }
+
+std::string engine_name(Engine engine) { return kEngines.at(static_cast<size_t>(engine)); }
 
 Boundary parse_boundary(const std::string& name) {
   if (name == "unit") return Boundary::Unit;

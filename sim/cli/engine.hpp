@@ -28,6 +28,8 @@ constexpr bool has_verilog(Engine engine) { return engine == Engine::Rtl || engi
 /// Throw InputError naming those there are.
 Engine parse_engine(const std::string& name);
 Boundary parse_boundary(const std::string& name);
+/// What parse_engine() takes.
+std::string engine_name(Engine engine);
 
 /// units_folder()/<name from the Verilog parameters>/libraypool_unit.so, where `raypool unit` builds it; with
 /// `waves` the one that can write waveforms. Of a multiprocessor of `units` units.

@@ -414,6 +414,7 @@ std::string to_json(const RunRecord& record) {
   const Json configuration = Json::parse(to_json(record.configuration));
   json["configuration"] = configuration;
   json["engine"] = record.engine;
+  if (!record.engine_choice.empty()) json["engine_choice"] = record.engine_choice;
   if (!record.boundary.empty()) json["boundary"] = record.boundary;
   if (!record.hits.empty()) json["hits"] = record.hits;
   if (!record.precision.empty()) json["precision"] = record.precision;

@@ -21,9 +21,10 @@ namespace raypool {
 struct RunRecord {
   std::vector<std::string> command;  ///< the command line
   std::string engine;
-  std::string boundary;   ///< unit or chip, of engines rtl and lockstep; else empty
-  std::string hits;       ///< own or embree, of engine native; else empty
-  std::string precision;  ///< single or double, of engine native; else empty
+  std::string engine_choice;  ///< why this engine, if its user left that open; else empty
+  std::string boundary;       ///< unit or chip, of engines rtl and lockstep; else empty
+  std::string hits;           ///< own or embree, of engine native; else empty
+  std::string precision;      ///< single or double, of engine native; else empty
   Configuration configuration;
   std::string shaders;                        ///< folder of the shader set; empty: the built-in kernels draw
   std::shared_ptr<const RayProgram> kernels;  ///< of the shader set; null: the built-in ones

@@ -12,6 +12,7 @@
 #include "cli/black_picture.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
+#include "cli/engine_choice.hpp"
 #include "cli/folders.hpp"
 #include "cli/frame.hpp"
 #include "cli/image_size.hpp"
@@ -20,6 +21,7 @@
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
 #include "cli/shaders.hpp"
+#include "cli/sim_checks.hpp"
 #include "config/settings.hpp"
 #include "config/unused_fields.hpp"
 #include "files/unfinished.hpp"
@@ -43,108 +45,11 @@ namespace fs = std::filesystem;
 constexpr double kLeastDetail = 0.01;
 constexpr const char* kWaveform = "waves.fst";
 
-bool is_chosen(const SimOptions& options, const std::string& field) {
-  const std::vector<std::string> set = paths_set(options.set);
-  return std::find(set.begin(), set.end(), field) != set.end();
-}
-
-void check_precision(const SimOptions& options, Engine engine) {
-  if ((!options.precision.empty() || options.unstable != 0) && engine != Engine::Native) {
-    throw InputError(fmt::format(
-        "engine {} draws with the arithmetic of its machine: use native, or leave --precision and --unstable out",
-        options.engine));
-  }
-  if (options.unstable != 0 && (options.precision == "double" || options.hits == "embree")) {
-    throw InputError(
-        "--unstable moves last bits of single precision, with hits of our own: leave it out, or --precision double and "
-        "--hits embree");
-  }
-  if (options.precision.empty()) return;
-  if (options.precision != "single" && options.precision != "double") {
-    throw InputError(fmt::format("--precision is '{}'{}", options.precision,
-                                 did_you_mean(options.precision, {"single", "double"}, "use single or double")));
-  }
-  if (options.precision == "single") return;
-  const std::vector<std::string> set = paths_set(options.set);
-  const bool arithmetic =
-      std::any_of(set.begin(), set.end(), [](const std::string& path) { return path.rfind("arithmetic.", 0) == 0; });
-  if (options.hits == "embree" || !options.traverser.empty() || is_chosen(options, "chip.traverser") || arithmetic) {
-    throw InputError(
-        "--precision double has neither the arithmetic nor the hits of a machine: leave --hits, --traverser and --set "
-        "arithmetic... out");
-  }
-}
-
-void check(const SimOptions& options, Engine engine) {
-  if ((engine == Engine::Sampled || engine == Engine::Estimate) && options.estimating == nullptr)
-    throw InputError(fmt::format("this program has no engine {}: use another, such as model", options.engine));
-  check_depth_and_units(options.depth, options.units);
-  if (!options.boundary.empty() && !has_verilog(engine)) {
-    throw InputError(fmt::format(
-        "engine {} has no Verilog, and so no boundary: use rtl or lockstep, or leave --boundary out", options.engine));
-  }
-  if (!options.hits.empty() && engine != Engine::Native) {
-    throw InputError(
-        fmt::format("engine {} has the hits of its traverser: use native, or leave --hits out", options.engine));
-  }
-  if (!options.hits.empty() && options.hits != "own" && options.hits != "embree") {
-    throw InputError(fmt::format("--hits is '{}'{}", options.hits,
-                                 did_you_mean(options.hits, {"own", "embree"}, "use own or embree")));
-  }
-  if (options.hits == "embree" && (!options.traverser.empty() || is_chosen(options, "chip.traverser")))
-    throw InputError("--hits embree takes no hits of the machine's traverser: leave --traverser out");
-  check_precision(options, engine);
-  check_shaders(options, engine);
-  if (options.waves && !has_verilog(engine)) {
-    throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
-  }
-  if (options.modules && (engine == Engine::Native || engine == Engine::Estimate)) {
-    throw InputError(fmt::format("engine {} has no chip, and so no modules to print: choose another, such as model",
-                                 options.engine));
-  }
-  if (!options.trace.empty() && engine != Engine::Model) {
-    throw InputError(fmt::format("engine {} leaves no trace: use model, or leave trace out", options.engine));
-  }
-  if (options.threads != 0 && engine != Engine::Native && engine != Engine::Estimate && engine != Engine::Sampled) {
-    throw InputError(fmt::format(
-        "engine {} runs on one thread: use native, estimate or sampled, or leave --threads out", options.engine));
-  }
-  if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
-  if (engine != Engine::Sampled && (!options.error.empty() || !options.time.empty() || options.seed != 0)) {
-    throw InputError(
-        fmt::format("engine {} draws no sample: use sampled, or leave --error, --time and --seed out", options.engine));
-  }
-  if (options.cycle_limit && engine != Engine::Model && !has_verilog(engine)) {
-    throw InputError(
-        fmt::format("engine {} draws without a count of cycles that could end: use model, rtl or lockstep, or leave "
-                    "--cycles out",
-                    options.engine));
-  }
-  if (!options.error.empty() && !options.time.empty())
-    throw InputError("--error determines the time, and --time the error: give one of them");
-}
-
 /// Settings without effect are refused; those of a file, which may be written for other runs as well, are reported.
 void check_fields_in_use(const Configuration& configuration) {
   refuse_unused_settings(configuration);
   const std::string told = unused_in_file(configuration);
   if (!told.empty()) fmt::print(stderr, "raypool: warning: {}\n", told);
-}
-
-/// "2%", or "10s": a number above zero and that unit, which may be left out.
-double parse_amount(const std::string& text, const char* option, const std::string& unit, double most) {
-  size_t end = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
-    end = std::string::npos;
-  }
-  if (end == std::string::npos || (end != text.size() && text.substr(end) != unit) || !(value > 0 && value <= most)) {
-    throw InputError(
-        fmt::format("{} is '{}': it must be a number above 0, at most {:g}, and {}", option, text, most, unit));
-  }
-  return value;
 }
 
 template <typename Item>
@@ -183,8 +88,11 @@ fs::path default_folder(const SimOptions& options, const Scene& scene, const Run
   std::string name = fs::path(options.scene).stem().string();
   if (options.detail != 1) name += fmt::format("-detail{:g}", options.detail);
   if (!options.view.empty()) name += "-" + fs::path(options.view).stem().string();
+  const std::string engine = !options.choose_engine  ? options.engine
+                             : options.error.empty() ? fmt::format("within{:g}", seconds_of(options))
+                                                     : fmt::format("error{:g}", 100 * error_of(options));
   name += fmt::format("-{}-{}cu-{}x{}-depth{}-{}", configuration.name, options.units, size.width, size.height,
-                      options.depth, options.engine);
+                      options.depth, engine);
   if (options.boundary == "chip") name += "-chip";
   if (options.hits == "embree") name += "-embree";
   if (options.precision == "double") name += "-double";
@@ -201,25 +109,6 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   text += fmt::format("{:.0f} s", seconds);
   if (done.pixels_done > 0.02) text += fmt::format(", about {:.0f} s to go", seconds * (1 / done.pixels_done - 1));
   return text;
-}
-
-/// The frames of the picture, one after the other.
-FrameBuffer draw_samples(RunRecord& record, const Scene& scene, const MemoryImage& image, const Tracer& tracer,
-                         NativeOptions& native) {
-  std::optional<FrameBuffer> picture;
-  for (int sample = 0; sample < record.samples; ++sample) {
-    native.change_arguments = [sample](std::array<uint32_t, kArguments>& arguments) {
-      arguments[argument::kSample] = static_cast<uint32_t>(sample);
-    };
-    NativeStatistics statistics;
-    FrameBuffer frame = render_native(scene, image, tracer, native, &statistics);
-    record.native->add(statistics);
-    if (picture)
-      picture->add(frame);
-    else
-      picture = std::move(frame);
-  }
-  return std::move(*picture);
 }
 
 /// `decisions`, unless null, record what rays come to.
@@ -245,7 +134,7 @@ FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Sc
   const Progress drawing(true);
   FrameBuffer frame = record.precision == "double"
                           ? render_in_double(scene, image, tracer, native, *record.native, decisions)
-                          : draw_samples(record, scene, image, tracer, native);
+                          : render_samples(scene, image, tracer, native, record.samples, &*record.native);
   record.simulation_seconds = drawing.seconds();
   return frame;
 }
@@ -425,28 +314,40 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
   return std::move(around.frame);
 }
 
-/// The picture natively, the figures from a sample. `whole`: since when the command runs.
-FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
-                               const Progress& whole) {
+/// The figures of a sample, of a frame that is drawn natively and takes so much work. `whole`: since when the command
+/// runs.
+void add_sample(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
+                Surroundings& around, const std::vector<NativeWork>& work, const Progress& whole) {
   sampled::Wanted wanted;
-  if (!options.error.empty()) wanted.error = parse_amount(options.error, "--error", "%", 50) / 100;
-  const double time = options.time.empty() ? 0 : parse_amount(options.time, "--time", "s", 1e6);
+  if (!options.error.empty()) wanted.error = error_of(options);
+  // What is over already gets the smallest sample.
+  if (!options.within.empty()) wanted.seconds = std::max(1e-3, seconds_of(options) - whole.seconds());
   wanted.seed = record.seed = std::max<uint64_t>(1, options.seed);
   wanted.processes = threads_or_all(options.threads);
-
-  Surroundings around(scene, image, record);
-  warn_of_lost_shadows(record, scene, around.tracer);
-  const Progress drawing(true);
-  std::vector<NativeWork> work;
-  FrameBuffer frame = draw_natively(options, record, scene, image, around.tracer, &work);
-  // What is over already gets the smallest sample.
-  if (time > 0) wanted.seconds = std::max(1e-3, time - whole.seconds());
   ChipOptions chip = chip_options(record, scene, image, around);
   Progress progress(options.quiet || options.json);
   chip.progress = [&](const ChipProgress& done) {
     if (progress.due()) progress.show(progress_text(done, true, progress.seconds()));
   };
   record.sampled = options.estimating->sampled.draw(chip, static_cast<uint32_t>(options.units), work, wanted);
+}
+
+/// The figures that follow from what native has counted.
+void add_estimate(const SimOptions& options, RunRecord& record, const Scene& scene, const MemoryImage& image,
+                  const Tracer& tracer) {
+  record.estimated = options.estimating->estimate(record.configuration, static_cast<uint32_t>(options.units), scene,
+                                                  image, tracer, native_options(record), *record.native);
+}
+
+/// The picture natively, the figures from a sample.
+FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
+                               const Progress& whole) {
+  Surroundings around(scene, image, record);
+  warn_of_lost_shadows(record, scene, around.tracer);
+  const Progress drawing(true);
+  std::vector<NativeWork> work;
+  FrameBuffer frame = draw_natively(options, record, scene, image, around.tracer, &work);
+  add_sample(options, record, scene, image, around, work, whole);
   record.simulation_seconds = drawing.seconds();
   return frame;
 }
@@ -457,8 +358,57 @@ FrameBuffer draw_estimated_frame(const SimOptions& options, RunRecord& record, c
   warn_of_lost_shadows(record, scene, tracer);
   const Progress drawing(true);
   FrameBuffer frame = draw_natively(options, record, scene, image, tracer);
-  record.estimated = options.estimating->estimate(record.configuration, static_cast<uint32_t>(options.units), scene,
-                                                  image, tracer, native_options(record), *record.native);
+  add_estimate(options, record, scene, image, tracer);
+  record.simulation_seconds = drawing.seconds();
+  return frame;
+}
+
+/// What is known before anything is drawn.
+EngineCosts engine_costs(const SimOptions& options, const RunRecord& record) {
+  EngineCosts costs;
+  costs.cores = threads_or_all(options.threads);
+  if (options.shaders.empty()) costs.estimate_error = options.estimating->estimate_error(record.configuration);
+  if (record.samples == 1) {
+    costs.sample_share = options.estimating->sampled.least_share(
+        record.configuration, static_cast<uint32_t>(record.width), static_cast<uint32_t>(record.height));
+  }
+  return costs;
+}
+
+/// Reports the choice at once: the user may want another.
+Engine take(const SimOptions& options, RunRecord& record, const EngineChoice& choice) {
+  record.engine = engine_name(choice.engine);
+  record.engine_choice = choice.why;
+  if (!options.quiet && !options.json) {
+    fmt::print("engine {}: {}\n", record.engine, choice.why);
+    std::fflush(stdout);
+  }
+  return choice.engine;
+}
+
+/// The picture natively, and the figures of the engine that ends in time; model draws its own.
+FrameBuffer draw_within(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
+                        OutputFolder& out, const Progress& whole) {
+  EngineCosts costs = engine_costs(options, record);
+  if (!costs.sample_share)
+    return draw_on_chip(options, take(options, record, engine_for_time(costs)), record, scene, image, out);
+  Surroundings around(scene, image, record);
+  const Progress drawing(true);
+  std::vector<NativeWork> work;
+  FrameBuffer frame = draw_natively(options, record, scene, image, around.tracer, &work);
+  costs.model_seconds = options.estimating->sampled.seconds(chip_options(record, scene, image, around),
+                                                            static_cast<uint32_t>(options.units), work);
+  costs.seconds_left = seconds_of(options) - whole.seconds();
+  const Engine engine = take(options, record, engine_for_time(costs));
+  if (engine == Engine::Model) {
+    record.native.reset();
+    return draw_on_chip(options, engine, record, scene, image, out);
+  }
+  warn_of_lost_shadows(record, scene, around.tracer);
+  if (engine == Engine::Sampled)
+    add_sample(options, record, scene, image, around, work, whole);
+  else
+    add_estimate(options, record, scene, image, around.tracer);
   record.simulation_seconds = drawing.seconds();
   return frame;
 }
@@ -470,6 +420,10 @@ EyeOf eye_of(const SimOptions& options, const Scene& scene) {
 
 FrameBuffer draw(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image,
                  OutputFolder& out, const Progress& whole) {
+  if (options.choose_engine) {
+    if (!options.within.empty()) return draw_within(options, record, scene, image, out, whole);
+    engine = take(options, record, engine_for_error(error_of(options), engine_costs(options, record)));
+  }
   if (engine == Engine::Sampled) return draw_sampled_frame(options, record, scene, image, whole);
   if (engine == Engine::Estimate) return draw_estimated_frame(options, record, scene, image);
   if (engine == Engine::Native) return draw_with_precision(options, record, scene, image, out);
@@ -550,7 +504,7 @@ int sim_command(const SimOptions& options) {
   const Progress whole(true);
   const Engine engine = parse_engine(options.engine);
   const ImageSize size = parse_image_size(options.size);
-  check(options, engine);
+  check_options(options, engine);
 
   std::shared_ptr<const shader::ShaderSet> shaders;
   if (!options.shaders.empty()) shaders = options.shader_source.load(options.shaders);

@@ -23,6 +23,10 @@ constexpr int kRounds = 2;
 // How far 19 of 20 estimates are off at most, as a share of the true value: `make estimates` measures it.
 constexpr double kStaticError = 0.14, kHardwareError = 0.33, kLeastShareError = 0.01;
 
+double relative_error(const Configuration& configuration) {
+  return configuration.chip.traverser == TraverserName::Hardware ? kHardwareError : kStaticError;
+}
+
 KernelTable kernel_costs(const Configuration& configuration) {
   const Program& program = ray_kernel_program(KernelTarget(configuration));
   KernelTable costs;
@@ -141,6 +145,11 @@ class TileCounter {
 
 }  // namespace
 
+double error_of(const Configuration& configuration) {
+  const double error = relative_error(configuration);
+  return (1 / (1 - error) - 1 / (1 + error)) / 2;
+}
+
 Estimates estimate_frame(const Configuration& configuration, uint32_t units, const Scene& scene,
                          const MemoryImage& image, const Tracer& tracer, const NativeOptions& native,
                          const NativeStatistics& whole) {
@@ -164,7 +173,7 @@ Estimates estimate_frame(const Configuration& configuration, uint32_t units, con
   double cycles = flow.cycles;
   if (flow.rays < rays && flow.steady_rays > 0)
     cycles += flow.steady_cycles / flow.steady_rays * std::max(0.0, rays - flow.rays);
-  const double error = configuration.chip.traverser == TraverserName::Hardware ? kHardwareError : kStaticError;
+  const double error = relative_error(configuration);
   Estimates estimates;
   estimates.cycles = {cycles, cycles / (1 + error), cycles / (1 - error)};
   const auto mrays = [&](double in_cycles) { return 1e3 * rays / in_cycles; };

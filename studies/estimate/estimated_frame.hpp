@@ -13,6 +13,9 @@
 
 namespace raypool::estimate {
 
+/// As Estimates::error(), of every frame of such a machine.
+double error_of(const Configuration& configuration);
+
 /// Of a frame that render_native() has drawn with these options, whose counts are `whole`. Deterministic.
 Estimates estimate_frame(const Configuration& configuration, uint32_t units, const Scene& scene,
                          const MemoryImage& image, const Tracer& tracer, const NativeOptions& native,

@@ -17,7 +17,7 @@ EXACT = {"arithmetic.subnormals": "ieee", "arithmetic.significand": 24, "arithme
          "arithmetic.fma": False}  # fmt: skip
 # Options of raypool sim that are of other engines, or of a machine, which Embree's own picture does not ask for.
 OF_OTHERS = ("--engine", "--boundary", "--unit-library", "--hits", "--set", "--traverser", "--trace", "--error",
-             "--time", "--seed", "--cycles", "--inspect")  # fmt: skip
+             "--within", "--seed", "--cycles", "--inspect")  # fmt: skip
 
 
 class Picture:

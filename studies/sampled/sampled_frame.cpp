@@ -27,6 +27,7 @@ constexpr uint32_t kLeastBlockTiles = 4;
 constexpr uint32_t kManyBlocks = 256;  // of which there may be half as many
 constexpr uint32_t kLeastStrata = 8;   // for the variance to be known
 constexpr uint32_t kPilotShare = 25;   // one of so many blocks
+constexpr uint32_t kBlocksTimed = 3;   // to know how long a frame takes
 constexpr double kMargin = 1.1;        // more blocks than seem to be needed: a variance that is known is a sample's
 constexpr double kGrowth = 2;          // of the sample at a time, at most
 // A process begins with a block that is not counted: each has several to simulate.
@@ -77,6 +78,16 @@ struct Beside {
   }
   uint32_t before, behind;
 };
+
+/// Inner blocks of the pilot, in so many strata.
+uint32_t pilot_strata(uint32_t tiles, uint32_t block) {
+  return std::max(kLeastStrata, tiles / block / kPilotShare / kLeastDrawn);
+}
+
+/// A picture of fewer blocks has no sample.
+bool has_pilot(uint32_t tiles, uint32_t block) {
+  return Sample::most_strata(tiles, block) >= kLeastDrawn * kLeastStrata;
+}
 
 /// Instructions of each kernel, from its first to that of the next one.
 EnumArray<RayKernel, double, kRayKernels> kernel_lengths(const ChipOptions& chip) {
@@ -138,10 +149,8 @@ class SampledFrame {
   }
 
   Figures draw() {
-    const uint32_t most = Sample::most_strata(figures_.tiles, block_);
-    if (most < kLeastDrawn * kLeastStrata) return draw_whole();
-    Sample sample(figures_.tiles, block_, sizes_,
-                  std::max(kLeastStrata, figures_.tiles / block_ / kPilotShare / kLeastDrawn), wanted_.seed);
+    if (!has_pilot(figures_.tiles, block_)) return draw_whole();
+    Sample sample(figures_.tiles, block_, sizes_, pilot_strata(figures_.tiles, block_), wanted_.seed);
     std::vector<uint32_t> pilot = sample.draw(0);
     pilot.insert(pilot.begin(), 0);
     pilot.push_back(sample.blocks() - 1);
@@ -158,6 +167,25 @@ class SampledFrame {
     }
     conclude(estimate(sample));
     return figures_;
+  }
+
+  /// Of the whole frame, as a few blocks in different places of it take.
+  double seconds() {
+    Group group;
+    double size = 0;
+    const auto blocks = size32(work_);
+    for (uint32_t place = 1; place < 2 * kBlocksTimed; place += 2) {
+      const uint32_t block = place * blocks / (2 * kBlocksTimed);
+      const uint32_t first = block * block_, end = std::min(first + block_, figures_.tiles);
+      if (!group.emplace(first, true).second) continue;
+      for (uint32_t tile = first; tile < end; ++tile) group[tile] = true;
+      size += sizes_[block];
+    }
+    // That the frame does not take.
+    fills_caches_ = false;
+    const auto begin = std::chrono::steady_clock::now();
+    in_processes(1, 1, [&](size_t) { return simulate(group); });
+    return seconds_since(begin) * std::accumulate(sizes_.begin(), sizes_.end(), 0.0) / size;
   }
 
  private:
@@ -259,7 +287,7 @@ class SampledFrame {
     run.progress = {};
     chip::TileCosts costs;
     run.tile_costs = &costs;
-    run.visited_before = [this](uint32_t tile) { return visited_before(tile); };
+    if (fills_caches_) run.visited_before = [this](uint32_t tile) { return visited_before(tile); };
     for (const auto& [tile, counts] : group) run.tiles.push_back(tile);
     run_on_model(run);
     return {reinterpret_cast<const char*>(costs.costs().data()), costs.costs().size() * sizeof(Counts)};
@@ -341,6 +369,7 @@ class SampledFrame {
   double beside_error_;               // a share of each figure
   std::vector<Known> known_;          // [block]
   std::vector<double> sizes_;         // [block] a share of the frame's work, times what is known
+  bool fills_caches_ = true;          // before a block, behind tiles that are left out
   double rays_ = 0;                   // of the frame
   std::map<uint32_t, Counts> costs_;  // [block]
 };
@@ -356,6 +385,19 @@ std::vector<std::vector<PixelTile>> blocks_of(const Configuration& configuration
     blocks.back().push_back(tile);
   }
   return blocks;
+}
+
+double least_share(const Configuration& configuration, uint32_t width, uint32_t height) {
+  const auto tiles = size32(chip::along_walk(configuration, width, height));
+  const uint32_t block = block_tiles(configuration, tiles);
+  if (!has_pilot(tiles, block)) return 1;
+  const Beside beside(configuration);
+  const uint32_t blocks = kLeastDrawn * pilot_strata(tiles, block) + 2;
+  return std::min(1.0, static_cast<double>(blocks) * (beside.before + block + beside.behind) / tiles);
+}
+
+double seconds_of_frame(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work) {
+  return SampledFrame(chip, units, work, {}).seconds();
 }
 
 Figures draw_sampled(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work,

@@ -15,6 +15,13 @@ namespace raypool::sampled {
 /// The blocks of which a sample is drawn, in order: the parts in which native draws for it (NativeOptions::parts).
 std::vector<std::vector<PixelTile>> blocks_of(const Configuration& configuration, uint32_t width, uint32_t height);
 
+/// Of the frame's tiles, those that a pilot sample simulates, with those beside its blocks; 1 where the picture is too
+/// small for one.
+double least_share(const Configuration& configuration, uint32_t width, uint32_t height);
+
+/// Wall time in seconds that the model takes for the whole frame, from three blocks of it; otherwise as draw_sampled().
+double seconds_of_frame(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work);
+
 /// `work`: what each of blocks_of() takes, of the frame and its memory image. A pilot sample finds how many tiles it
 /// takes; if that is three quarters of the frame all of it is simulated. Options of `chip` as for run_board(); it
 /// passes on its exceptions, as in_processes() does; it makes the model of the chip itself, of so many units. The
@@ -24,6 +31,6 @@ Figures draw_sampled(const ChipOptions& chip, uint32_t units, const std::vector<
                      const Wanted& wanted);
 
 /// The engine.
-inline constexpr Sampler kSampler = {blocks_of, draw_sampled};
+inline constexpr Sampler kSampler = {blocks_of, least_share, seconds_of_frame, draw_sampled};
 
 }  // namespace raypool::sampled
