@@ -24,7 +24,7 @@ BUILD = os.environ.get("BUILD", "build")
 RAYPOOL = os.path.abspath(os.environ.get("RAYPOOL", os.path.join(BUILD, "raypool")))
 FEWEST, MOST = 0.92, 0.98  # of the intervals of the cycles
 FEWEST_OF_OTHERS = 0.90
-# Those that are small and in bursts; what little they are is known badly, and said to be.
+# Figures that are small and come in bursts are known badly, and have no interval to check.
 LEAST_SHARE = 0.01  # a utilisation below is not asked for
 FAILURE, OUTSIDE = 1, 3
 # {traverser: pictures of which samples of a few percent are parts}

@@ -38,7 +38,7 @@ bool ignores_hits(const WaitingShaders& shaders) {
   return ignores;
 }
 
-/// Whether a path's record must say how far along its ray has begun: else all that is known of its trace.
+/// Whether a path's record must hold where along its ray the trace began; otherwise that is a constant of each trace.
 bool records_begin(const WaitingShaders& shaders) {
   bool records = ignores_hits(shaders);
   for_each_site(shaders, [&](const Module& module, const TraceSite& site) {

@@ -38,7 +38,7 @@ class Worker {
     thread.mode = options.mode;
     thread.culling = options.culling;
     for (Packet& packet : packets_) packet.threads.assign(kernels_.most(), thread);
-    if (options.work != nullptr) visits_.emplace(tracer.traversal().wide_bvh());
+    if (options.work != nullptr) visits_.emplace(tracer.traversal().visits());
   }
 
   /// Only where options ask for it.
@@ -151,7 +151,7 @@ class Worker {
   EnumArray<RayKernel, Packet, kRayKernels> packets_;
   Intersection hit_{};
   std::vector<Ray> pending_;
-  std::optional<WideVisits> visits_;
+  std::optional<TreeVisits> visits_;
 };
 
 /// What is handed out to workers, one at a time: tiles, or parts of several. Which worker gets which does not matter:

@@ -60,9 +60,9 @@ struct PixelTile {
 struct NativeWork {
   EnumArray<RayKernel, uint64_t, kRayKernels> kernel_threads{};
   uint64_t rays = 0;                  ///< traced
-  uint64_t nodes = 0, triangles = 0;  ///< visited by them, on the fast way (Traversal)
+  uint64_t nodes = 0, triangles = 0;  ///< visited by them, as Traversal::visits() records it
   uint64_t places = 0;                ///< different ones of the tree among these
-  VisitList chip_places;              ///< of the chip's tree, about: Traversal::places_of()
+  VisitList chip_places;              ///< of the chip's tree, with the hardware's hits: Traversal::places_of()
   std::vector<size_t> tile_ends;      ///< of each tile of the part: so many of chip_places until its end
 };
 

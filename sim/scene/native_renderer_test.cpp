@@ -20,10 +20,12 @@ struct Rendered {
   NativeStatistics statistics;
 };
 
-Rendered render(const Scene& scene, NativeOptions options) {
+Rendered render(const Scene& scene, NativeOptions options, TraverserName traverser = TraverserName::Static) {
   options.kernel = reference::run;
   const MemoryImage image = build_memory({}, scene);
-  const Tracer tracer(scene, image.material_base);
+  ChipConfiguration chip;
+  chip.traverser = traverser;
+  const Tracer tracer(scene, image.material_base, chip);
   NativeStatistics statistics;
   FrameBuffer frame = render_native(scene, image, tracer, options, &statistics);
   return {std::move(frame), statistics};
@@ -121,9 +123,13 @@ TEST(NativeRenderer, PictureDoesNotDependOnThreadsOrTiles) {
   }
 }
 
-TEST(NativeRenderer, DrawsInPartsAndReportsWhatEachTakes) {
+class NativeParts : public testing::TestWithParam<TraverserName> {};
+INSTANTIATE_TEST_SUITE_P(Traversers, NativeParts, testing::Values(TraverserName::Static, TraverserName::Hardware));
+
+TEST_P(NativeParts, AreDrawnAndReportedWithWhatEachTakes) {
+  const bool hardware = GetParam() == TraverserName::Hardware;
   NativeOptions options = size(40, 32, 3);
-  const Rendered whole = render(make_cornell(), options);  // in tiles of 8x8
+  const Rendered whole = render(make_cornell(), options, GetParam());  // in tiles of 8x8
   std::vector<NativeWork> work;
   // Bands of four rows, the lowest first, in parts of three.
   for (uint32_t band = 0; band < 40; ++band) {
@@ -131,7 +137,7 @@ TEST(NativeRenderer, DrawsInPartsAndReportsWhatEachTakes) {
     options.parts.back().push_back({band % 5 * 8, 28 - band / 5 * 4, 32});
   }
   options.work = &work;
-  const Rendered parts = render(make_cornell(), options);
+  const Rendered parts = render(make_cornell(), options, GetParam());
   EXPECT_TRUE(parts.frame == whole.frame);
   EXPECT_EQ(parts.statistics.contributions, whole.statistics.contributions);
   ASSERT_EQ(work.size(), 14u);
@@ -145,7 +151,7 @@ TEST(NativeRenderer, DrawsInPartsAndReportsWhatEachTakes) {
     EXPECT_EQ(part.tile_ends.size(), options.parts[&part - work.data()].size());
     EXPECT_TRUE(std::is_sorted(part.tile_ends.begin(), part.tile_ends.end()));
     EXPECT_EQ(part.tile_ends.back(), part.chip_places.size());
-    EXPECT_GE(part.chip_places.size(), part.places) << "each stands for one or more";
+    EXPECT_EQ(part.chip_places.size(), hardware ? part.places : 0) << "in the chip's tree";
     EXPECT_LT(part.places, (part.nodes + part.triangles) / 5) << "neighbours visit the same";
   }
   for (size_t i = 0; i < kRayKernels; ++i) EXPECT_EQ(sum.kernel_threads[i], whole.statistics.kernel_threads[i]);
@@ -154,7 +160,7 @@ TEST(NativeRenderer, DrawsInPartsAndReportsWhatEachTakes) {
   options.threads = 3;
   std::vector<NativeWork> again;
   options.work = &again;
-  render(make_cornell(), options);
+  render(make_cornell(), options, GetParam());
   for (size_t i = 0; i < work.size(); ++i) {
     EXPECT_EQ(again[i].nodes, work[i].nodes);
     EXPECT_EQ(again[i].places, work[i].places);

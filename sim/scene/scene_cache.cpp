@@ -307,8 +307,6 @@ SceneTrees SceneCache::trees(const Scene& scene, const std::function<SceneTrees(
     member(of.bvh.bounds);
     member(of.wide.nodes);
     member(of.wide.blocks);
-    of.wide.node_origins.each_member(member);
-    of.wide.block_origins.each_member(member);
   };
   if (find(key.name(), [&](std::string_view payload) {
         BytesReader in(payload);

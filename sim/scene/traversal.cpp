@@ -229,19 +229,40 @@ bool Traversal::nearest(const RayQuery& query, Hit& hit, TraversalCounts* counts
   });
 }
 
-void Traversal::places_of(const WideVisits& visits, size_t from, VisitList& places) const {
-  const auto add = [&](uint32_t place) {
+void Traversal::places_of(const TreeVisits& visits, size_t from, VisitList& places) const {
+  if (!triangle_test_) return;
+  for (size_t i = from; i < visits.places.size(); ++i) {
+    const uint32_t place = visits.places[i];
     const bool leaf = (place & kLeafBit) != 0;
     const TriangleBlock* const block = leaf ? &bvh_.blocks[place & ~kLeafBit] : nullptr;
     places.push_back({leaf ? block->first : place, static_cast<uint8_t>(leaf ? block->count : 0), 0, 0});
-  };
-  for (size_t i = from; i < visits.places.size(); ++i) {
-    const uint32_t place = visits.places[i];
-    ((place & kLeafBit) != 0 ? wide_.block_origins : wide_.node_origins).each(place & ~kLeafBit, add);
   }
 }
 
-bool Traversal::nearest(const RayQuery& query, Hit& hit, WideVisits& visits) const {
+TreeVisits Traversal::visits() const {
+  return triangle_test_ ? TreeVisits(bvh_.nodes.size(), bvh_.blocks.size())
+                        : TreeVisits(wide_.nodes.size(), wide_.blocks.size());
+}
+
+void Traversal::add(const VisitList& list, TreeVisits& visits) const {
+  for (const Visit& visit : list) {
+    if (visit.triangles == 0) {
+      visits.node(visit.place);
+      continue;
+    }
+    const auto block = std::partition_point(bvh_.blocks.begin(), bvh_.blocks.end(),
+                                            [&](const TriangleBlock& each) { return each.first < visit.place; });
+    visits.block(static_cast<uint32_t>(block - bvh_.blocks.begin()), visit.triangles);
+  }
+}
+
+bool Traversal::nearest(const RayQuery& query, Hit& hit, TreeVisits& visits) const {
+  if (triangle_test_) {
+    VisitList list;
+    const bool met = nearest(query, hit, nullptr, &list);
+    add(list, visits);
+    return met;
+  }
   return nearest_on(query, hit, [&](const PreparedRay& ray, Candidate& best) {
     return walks().back().nearest(wide_, ray, best, &visits);
   });
@@ -254,7 +275,13 @@ bool Traversal::occluded(const RayQuery& query, TraversalCounts* counts, VisitLi
   return walk<true>(query, ray, best, counts, visits);
 }
 
-bool Traversal::occluded(const RayQuery& query, WideVisits& visits) const {
+bool Traversal::occluded(const RayQuery& query, TreeVisits& visits) const {
+  if (triangle_test_) {
+    VisitList list;
+    const bool met = occluded(query, nullptr, &list);
+    add(list, visits);
+    return met;
+  }
   const PreparedRay ray = prepare(query, bvh_.bounds);
   Candidate best;
   return ray.valid && !bvh_.nodes.empty() && walks().back().any(wide_, ray, best, &visits);
@@ -315,7 +342,7 @@ bool Tracer::trace(const Ray& ray, Intersection& intersection, TraversalCounts* 
   return trace_and_tell(ray, intersection, counts, visits);
 }
 
-bool Tracer::trace(const Ray& ray, Intersection& intersection, WideVisits& visits) const {
+bool Tracer::trace(const Ray& ray, Intersection& intersection, TreeVisits& visits) const {
   return trace_and_tell(ray, intersection, visits);
 }
 

@@ -62,22 +62,23 @@ class Traversal {
   bool nearest(const RayQuery& ray, Hit& hit, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
   /// Any hit at all; visits fewer nodes than nearest().
   bool occluded(const RayQuery& ray, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
-  /// The same answers, the fast way; `visits` records what is visited on it.
-  bool nearest(const RayQuery& ray, Hit& hit, WideVisits& visits) const;
-  bool occluded(const RayQuery& ray, WideVisits& visits) const;
+  /// The same answers; `visits`, made by visits(), records what is visited: on the fast way, or in bvh() where that
+  /// does not have these hits.
+  bool nearest(const RayQuery& ray, Hit& hit, TreeVisits& visits) const;
+  bool occluded(const RayQuery& ray, TreeVisits& visits) const;
   /// The same answer as nearest(), from every triangle in turn. For tests.
   bool nearest_of_all(const RayQuery& ray, Hit& hit) const;
 
   const Bvh& bvh() const { return bvh_; }
   const WideBvh& wide_bvh() const { return wide_; }
-  /// What rays that visited this on the fast way, from so many places on, visit in bvh(), about: some nodes are listed
-  /// several times, and here and there they come to some that they miss on the other way. They are appended.
-  void places_of(const WideVisits& visits, size_t from, VisitList& places) const;
+  TreeVisits visits() const;
+  /// Appends the places in bvh() that were visited, from so many on; none that were visited on the fast way.
+  void places_of(const TreeVisits& visits, size_t from, VisitList& places) const;
   /// Makes every box of bvh() what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
   /// `box_bits`, 6 .. 16: boxes are then tested in integers of so many bits (narrow_boxes.hpp); 0: in floats.
   void compress_nodes(uint32_t box_bits = 0);
-  /// From now on nearest() and occluded() test triangles so, with visits or without, but not with WideVisits; boxes are
-  /// in floats, or in integers if compress_nodes() is called for them.
+  /// From now on nearest() and occluded() test triangles so, with visits or without; boxes are in floats, or in
+  /// integers if compress_nodes() is called for them.
   void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
   /// From now on hits are what the traverser of the chip makes of them. Of `hardware`: which triangle is hit, and at
   /// which internal t, as in rtl/traverser/rp_triangle_pipe.v (TriangleTest with the plane in 32 bits); t, u, v and
@@ -92,6 +93,8 @@ class Traversal {
 
  private:
   void set_trees(SceneTrees trees);
+  /// Those of a list, of this tree.
+  void add(const VisitList& list, TreeVisits& visits) const;
   template <bool kAny>
   bool walk(const RayQuery& query, const PreparedRay& ray, Candidate& best, TraversalCounts* counts,
             VisitList* visits) const;
@@ -124,8 +127,8 @@ class Tracer {
   bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr,
              VisitList* visits = nullptr) const;
 
-  /// The same answer; `visits`, made of traversal().wide_bvh(), records what is visited on the fast way to it.
-  bool trace(const Ray& ray, Intersection& intersection, WideVisits& visits) const;
+  /// The same answer; `visits`, which traversal().visits() made, records what is visited.
+  bool trace(const Ray& ray, Intersection& intersection, TreeVisits& visits) const;
 
   /// Words 0 .. 11 are the ray's, the others zero.
   static void pass_on(const Ray& ray, Intersection& intersection);

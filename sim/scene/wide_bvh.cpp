@@ -18,7 +18,6 @@ namespace {
 struct Child {
   const BvhNode* parent;
   uint32_t lane;
-  std::vector<uint32_t> way;  ///< to it from the node of which children are looked for: nodes that are opened
 
   uint32_t place() const { return parent->children[lane]; }
   /// Half of its box's.
@@ -43,7 +42,7 @@ class Widener {
   WideBvh run() {
     wide_.nodes.reserve(bvh_.nodes.size());
     wide_.blocks.reserve(bvh_.blocks.size());
-    if (!bvh_.nodes.empty()) add_node(0, {});
+    if (!bvh_.nodes.empty()) add_node(0);
     return std::move(wide_);
   }
 
@@ -52,38 +51,34 @@ class Widener {
     return (place & kLeafBit) != 0 ? bvh_.blocks[place & ~kLeafBit].count : triangles_[place];
   }
 
-  void add_children(uint32_t node, const std::vector<uint32_t>& way, std::vector<Child>& children) const {
+  void add_children(uint32_t node, std::vector<Child>& children) const {
     for (uint32_t lane = 0; lane < kBvhWidth; ++lane) {
-      if (bvh_.nodes[node].children[lane] != kNoChild) children.push_back({&bvh_.nodes[node], lane, way});
+      if (bvh_.nodes[node].children[lane] != kNoChild) children.push_back({&bvh_.nodes[node], lane});
     }
   }
 
   /// Opens children of this node, the largest first, as long as all find room.
   std::vector<Child> children_of(uint32_t node) const {
     std::vector<Child> children;
-    add_children(node, {}, children);
+    add_children(node, children);
     for (;;) {
       size_t largest = children.size();
       for (size_t i = 0; i < children.size(); ++i) {
         const uint32_t place = children[i].place();
         if ((place & kLeafBit) != 0 || triangles_[place] <= kBvhWidth) continue;
         std::vector<Child> inner;
-        add_children(place, {}, inner);
+        add_children(place, inner);
         if (children.size() - 1 + inner.size() > kWideBvhWidth) continue;
         if (largest == children.size() || children[i].area() > children[largest].area()) largest = i;
       }
       if (largest == children.size()) return children;
       const uint32_t place = children[largest].place();
-      std::vector<uint32_t> way = std::move(children[largest].way);
-      way.push_back(place);
       children.erase(children.begin() + static_cast<std::ptrdiff_t>(largest));
-      add_children(place, way, children);
+      add_children(place, children);
     }
   }
 
-  uint32_t add_node(uint32_t from, const std::vector<uint32_t>& way) {
-    wide_.node_origins.begin(way);
-    wide_.node_origins.add(from);
+  uint32_t add_node(uint32_t from) {
     const auto index = size32(wide_.nodes);
     wide_.nodes.emplace_back();
     WideBvhNode node{};
@@ -97,17 +92,15 @@ class Widener {
       for (int side = 0; side < 2; ++side) {
         for (int axis = 0; axis < 3; ++axis) node.bounds[side][axis][i] = child.parent->bounds[side][axis][child.lane];
       }
-      node.children[i] = triangles_of(child.place()) <= kBvhWidth ? add_block(child.place(), child.way)
-                                                                  : add_node(child.place(), child.way);
+      node.children[i] = triangles_of(child.place()) <= kBvhWidth ? add_block(child.place()) : add_node(child.place());
     }
     wide_.nodes[index] = node;
     return index;
   }
 
   /// All triangles below this place.
-  uint32_t add_block(uint32_t place, const std::vector<uint32_t>& way) {
+  uint32_t add_block(uint32_t place) {
     TriangleBlock block{};
-    wide_.block_origins.begin(way);
     gather(place, block);
     for (uint32_t i = block.count; i < kBvhWidth; ++i) {
       block.triangles[i] = kNoChild;
@@ -121,7 +114,6 @@ class Widener {
 
   void gather(uint32_t place, TriangleBlock& block) {
     if (place == kNoChild) return;
-    wide_.block_origins.add(place);
     if ((place & kLeafBit) == 0) {
       for (const uint32_t child : bvh_.nodes[place].children) gather(child, block);
       return;

@@ -22,37 +22,9 @@ struct alignas(64) WideBvhNode {
 };
 static_assert(sizeof(WideBvhNode) == 256);
 
-/// To what in the chip's tree a ray comes that comes to a node, or to a block: to nodes and, with kLeafBit, leaves.
-/// Some nodes are on the way to several.
-class WideOrigins {
- public:
-  /// What is added from now on is of the next one, and this way to it.
-  void begin(const std::vector<uint32_t>& way) {
-    begins_.push_back(size32(places_));
-    places_.insert(places_.end(), way.begin(), way.end());
-  }
-  void add(uint32_t place) { places_.push_back(place); }
-
-  template <typename Told>
-  void each(uint32_t number, const Told& told) const {
-    const uint32_t end = number + 1 < begins_.size() ? begins_[number + 1] : size32(places_);
-    for (uint32_t i = begins_[number]; i < end; ++i) told(places_[i]);
-  }
-  /// All that it consists of, to be kept or got back.
-  template <typename Member>
-  void each_member(const Member& member) {
-    member(begins_);
-    member(places_);
-  }
-
- private:
-  std::vector<uint32_t> begins_, places_;
-};
-
 struct WideBvh {
   std::vector<WideBvhNode> nodes;     ///< node 0 is the root; empty when no triangle has an area
   std::vector<TriangleBlock> blocks;  ///< each may hold the triangles of several leaves; `first` is not set
-  WideOrigins node_origins, block_origins;
 };
 
 /// A scene's two trees: the chip's, and the one for speed made of it.
@@ -66,9 +38,10 @@ WideBvh widen(const Bvh& bvh);
 
 /// What rays visit since begin(), and in which different places: so many a cache that held all of them would have to
 /// read.
-class WideVisits {
+class TreeVisits {
  public:
-  explicit WideVisits(const WideBvh& bvh) : nodes_(bvh.nodes.size()), blocks_(bvh.blocks.size()) {}
+  /// Of a tree with so many nodes and blocks.
+  TreeVisits(size_t tree_nodes, size_t tree_blocks) : nodes_(tree_nodes), blocks_(tree_blocks) {}
 
   void begin() {
     nodes = triangles = 0;
@@ -101,9 +74,9 @@ class WideVisits {
 /// not empty; `visits`, if not null, records them. False: nothing is hit. All answers are the same whichever set it is.
 struct Walk {
   const char* instructions;  ///< "sse", "avx2"
-  bool (*nearest)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits);
+  bool (*nearest)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, TreeVisits* visits);
   /// The first hit that is met.
-  bool (*any)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits);
+  bool (*any)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, TreeVisits* visits);
 };
 /// Those that this processor has, best last.
 const std::vector<Walk>& walks();

@@ -77,7 +77,7 @@ uint32_t go_on(const WideBvh& bvh, const WideBvhNode& node, unsigned lanes, cons
 
 /// `ray` is valid and the tree not empty. kAny: ends with the first hit. kVisits: `visits` records them.
 template <bool kAny, bool kVisits>
-bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits) {
+bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, TreeVisits* visits) {
   Float8 padded_near[3], padded_far[3], inverse[3];
   for (int axis = 0; axis < 3; ++axis) {
     padded_near[axis] = splat8(ray.padded[ray.near_side[axis]][axis]);
@@ -126,11 +126,11 @@ bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, Wide
   }
 }
 
-inline bool walk_nearest(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits) {
+inline bool walk_nearest(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, TreeVisits* visits) {
   return visits == nullptr ? walk_tree<false, false>(bvh, ray, best, visits)
                            : walk_tree<false, true>(bvh, ray, best, visits);
 }
-inline bool walk_any(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits) {
+inline bool walk_any(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, TreeVisits* visits) {
   return visits == nullptr ? walk_tree<true, false>(bvh, ray, best, visits)
                            : walk_tree<true, true>(bvh, ray, best, visits);
 }
