@@ -54,7 +54,7 @@ unexport ARGS
 # Those of NAMES that the command line has.
 said = $(foreach name,$1,$(if $(findstring command,$(origin $(name))),$(name)))
 # These leave the engine to the program.
-ifneq (,$(and $(call said,ERROR WITHIN),$(filter file,$(origin ENGINE))))
+ifneq (,$(and $(strip $(call said,ERROR WITHIN)),$(filter file,$(origin ENGINE))))
   ENGINE :=
 endif
 

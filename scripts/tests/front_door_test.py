@@ -129,6 +129,13 @@ class Values(unittest.TestCase):
             self.assertIn(f"--{name.lower()}={default}", said)
             self.assertIn(f"--{name.lower()}=else", other)
 
+    def test_what_may_be_afforded_leaves_the_engine_to_the_program(self):
+        for word in ("WITHIN=9s", "ERROR=1%"):
+            said = self.words("sim", word)
+            self.assertIn(f"--{word.lower()}", said)
+            self.assertEqual([option for option in said if option.startswith("--engine")], [])
+            self.assertIn("--engine=sampled", self.words("sim", word, "ENGINE=sampled"))
+
     def test_what_is_empty_is_left_to_the_program(self):
         said = self.words("sim", "SCENE=", "TRAVERSER=")
         self.assertEqual([word for word in said if re.match("--(scene|traverser|set|view|seed)", word)], [])
