@@ -160,7 +160,7 @@ def draw(row, options, folder):
     if row.machine.fitted:
         say(f"pareto: {name}: what the frame needs of it")
         config = folder / "machines" / f"{name}.json"
-        call("fit", *without(options, "samples"), *fields, "--quiet", "--out", config)
+        call("fit", *options, *fields, "--quiet", "--out", config)
         # Its own name is that of a file that the user may take elsewhere.
         options = without(options, "config", "set", "traverser")
         fields = [f"--config={config}"]
@@ -393,9 +393,14 @@ def publish(out, folder, names):
 
 def compare_machines(arguments, options, out, folder):
     """In `folder`, a new one in `out`."""
+    wanted = chosen_machines(arguments.machines)
+    if arguments.samples:
+        # The kernels of several frames hold more than those of one, which fit looks at.
+        if arguments.machines and any(name.endswith("fit") for name in wanted):
+            raise FidelityError("a machine is fitted to one frame: leave --samples or the machines with -fit out")
+        wanted = [name for name in wanted if not name.endswith("fit")]
     (folder / "machines").mkdir()
     draw_reference(arguments, options, folder)
-    wanted = chosen_machines(arguments.machines)
     rows = [Row(machine) for machine in (full(), *(machine_of(name) for name in wanted if name != SMALLEST_FIT))]
     for row in rows:
         draw(row, options, folder)
