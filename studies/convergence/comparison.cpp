@@ -32,8 +32,7 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-PictureSpread draw_with_shaders(const Task& task, const Scene& scene,
-                                const std::function<void(const BlockMeans&)>& seen) {
+PictureSpread draw_with_shaders(const Task& task, const Scene& scene, const Seen& seen) {
   const PictureSize& size = task.size;
   const ShaderFrames frames(task.set, scene, size);
   PictureSpread spread;
@@ -48,7 +47,7 @@ PictureSpread draw_with_shaders(const Task& task, const Scene& scene,
   return spread;
 }
 
-PictureSpread draw_reference(const Task& task, const Scene& scene) {
+PictureSpread draw_reference(const Task& task, const Scene& scene, const Seen& seen) {
   const PictureSize& size = task.size;
   const PathReference reference(scene, size.width, size.height, size.depth);
   std::vector<Random> randoms;
@@ -56,9 +55,12 @@ PictureSpread draw_reference(const Task& task, const Scene& scene) {
   PictureSpread spread;
   for (uint32_t sample = 0; sample < task.reference_samples; ++sample) {
     const std::vector<Vec3d> picture = reference_sample(reference, size, randoms);
-    spread.add(block_means(size.width, size.height, task.block, [&](uint32_t x, uint32_t y, uint32_t channel) {
-      return picture[size_t{y} * size.width + x][static_cast<int>(channel)];
-    }));
+    const BlockMeans means =
+        block_means(size.width, size.height, task.block, [&](uint32_t x, uint32_t y, uint32_t channel) {
+          return picture[size_t{y} * size.width + x][static_cast<int>(channel)];
+        });
+    spread.add(means);
+    if (seen) seen(means);
   }
   return spread;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "convergence/block_means.hpp"
@@ -17,10 +18,11 @@ struct Task {
   uint32_t reference_samples = 64;
 };
 
+using Seen = std::function<void(const BlockMeans&)>;
 /// The means of the set's samples; each scaled as if it were the whole picture. `seen` is called with each.
-PictureSpread draw_with_shaders(const Task& task, const Scene& scene,
-                                const std::function<void(const BlockMeans&)>& seen = {});
-PictureSpread draw_reference(const Task& task, const Scene& scene);
+PictureSpread draw_with_shaders(const Task& task, const Scene& scene, const Seen& seen = {});
+/// Those of the reference's.
+PictureSpread draw_reference(const Task& task, const Scene& scene, const Seen& seen = {});
 
 /// Ours less the reference's, as shares of the reference.
 struct Comparison {

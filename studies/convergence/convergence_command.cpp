@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "cli/image_size.hpp"
+#include "cli/progress.hpp"
 #include "convergence/comparison.hpp"
 
 namespace raypool::convergence {
@@ -42,16 +43,25 @@ int convergence_command(const CommandOptions& options) {
   task.reference_samples = static_cast<uint32_t>(std::lround(options.samples * options.reference));
   fmt::print("{:<12} {:>8} {:>6}  {:>7} {:>6} {:>8}  {:>8} {:>6}  {:>8}\n", "scene", "whole", "+-", "blocks", "noise",
              "scatter", "worst", "+-", fmt::format("> {}%", 100 * kAgreed));
+  Progress progress(false);
   for (const std::string& name : options.scenes) {
     SceneOptions with_surfaces;
     with_surfaces.surfaces = true;
     const Scene scene = load_scene(name, with_surfaces);
     std::vector<VarianceOfPictures> pictures;
     for (uint32_t n = kFewestSamples; 4 * n <= options.samples; n *= kStep) pictures.emplace_back(n);
+    const auto show = [&](const char* what, uint32_t drawn, uint32_t all) {
+      if (progress.due()) progress.show(fmt::format("  {}: {} of {} samples of {}", scene.name, drawn, all, what));
+    };
+    uint32_t drawn = 0;
     const PictureSpread ours = draw_with_shaders(task, scene, [&](const BlockMeans& sample) {
       for (VarianceOfPictures& each : pictures) each.add(sample);
+      show("the shaders", ++drawn, options.samples);
     });
-    print_row(scene, compare(ours, draw_reference(task, scene)));
+    drawn = 0;
+    const PictureSpread reference =
+        draw_reference(task, scene, [&](const BlockMeans&) { show("the reference", ++drawn, task.reference_samples); });
+    print_row(scene, compare(ours, reference));
     print_variances(pictures, ours);
   }
   return 0;
