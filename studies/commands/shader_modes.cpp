@@ -144,8 +144,8 @@ std::string table_of(const ShaderModes& modes, const std::string& reference, con
     };
     text += fmt::format("  {:<20} {:>8} {:>7} {:>7} {:>6} {:>8} {:>12} {:>10.2f} {:>8.2f}\n", row.mode,
                         share(difference.differ - difference.off_by_more), share(difference.off_by_more),
-                        difference.largest, decibels(difference.psnr), percent_more(row.light),
-                        row.instructions, row.cycles_a_ray, row.mrays_per_s);
+                        difference.largest, decibels(difference.psnr), percent_more(row.light), row.instructions,
+                        row.cycles_a_ray, row.mrays_per_s);
   }
   return text;
 }
