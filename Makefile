@@ -69,7 +69,7 @@ nearest = $(patsubst %,: did you mean %?,$(shell python3 -c \
   'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' "$1" $2))
 LIST := (make help-all lists all)
 ifneq (,$(unknown))
-  $(error $(unknown) is no variable of this Makefile$(call \
+  $(error $(unknown) is not a variable of this Makefile$(call \
     nearest,$(shell tr a-z- A-Z_ <<< '$(unknown)'),$(known)) $(LIST))
 endif
 # So is a target, and so is what a target does not look at, where that would be another result.

@@ -9,7 +9,7 @@ python=$(PATH=/usr/bin:$PATH command -v python3)
 # For a host of pages: folders that begin with an underscore are part of the site.
 mark=$folder/.nojekyll
 if [ -e "$folder" ] && [ ! -e "$mark" ]; then
-  echo "docs: $folder is there, and it is no site: name another folder" >&2
+  echo "docs: $folder is there, and it is not a site: name another folder" >&2
   exit 1
 fi
 rm -rf "$folder"

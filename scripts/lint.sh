@@ -21,7 +21,7 @@ kinds=(verilog pages columns python shell cpp)
 long_kinds=(lint_units lint_chip lint_blocks)
 for kind in "$@"; do
   [[ " ${kinds[*]} ${long_kinds[*]} " == *" $kind "* ]] ||
-    { echo "lint: '$kind' is no kind of check; there are ${kinds[*]}, and without one all of these are done;" \
+    { echo "lint: '$kind' is not a kind of check; there are ${kinds[*]}, and without one all of these are done;" \
       "and ${long_kinds[*]}" >&2; exit 1; }
 done
 chosen=("${@:-${kinds[@]}}")

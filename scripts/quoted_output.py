@@ -189,7 +189,7 @@ def main():
     options = parser.parse_args()
     unknown = [page for page in options.pages if page not in PAGES]
     if unknown:
-        parser.error(f"'{unknown[0]}' is no page: README.md or one of docs/**/*.md, named from the project's folder")
+        parser.error(f"'{unknown[0]}' is not a page: README.md or one of docs/**/*.md, named from the project's folder")
     wrong = [text for text in options.file if "=" not in text or not pathlib.Path(text.split("=", 1)[1]).is_file()]
     if wrong:
         parser.error(f"--file {wrong[0]}: NAME=PATH of a file that is there")

@@ -388,7 +388,7 @@ def chosen_levels(text):
     wanted = text.replace(",", " ").split()
     for name in wanted:
         if name not in names:
-            raise argparse.ArgumentTypeError(f"'{name}' is no level; there are {', '.join(names)}")
+            raise argparse.ArgumentTypeError(f"'{name}' is not a level; there are {', '.join(names)}")
     if not wanted:
         raise argparse.ArgumentTypeError(f"no level is named; there are {', '.join(names)}")
     return [level for level in LEVELS if level.name in wanted]

@@ -91,14 +91,15 @@ def machine_of(name):
     words = words[:-1] if fitted else words
     chosen = {field: names[0] for field, names in values.items()}
     if bits not in values["significand"]:
-        raise FidelityError(f"'{name}' is no machine: it begins with the bits of a significand, "
+        raise FidelityError(f"'{name}' is not a machine: it begins with the bits of a significand, "
                             f"{values['significand'][-1]} to {values['significand'][0]}")
     chosen["significand"] = bits
     of_word = {"fma": ("fma", "true"), **{word: (field, word) for field in (SLOW_UNIT, SUBNORMALS)
                                           for word in values[field][1:]}}  # fmt: skip
     for word in words:
         if word not in of_word:
-            raise FidelityError(f"'{name}' is no machine: '{word}' is none of {', '.join(of_word)}, and fit at the end")
+            raise FidelityError(f"'{name}' is not a machine: '{word}' is none of {', '.join(of_word)}, with fit at its "
+                                "end")  # fmt: skip
         field, value = of_word.pop(word)
         of_word = {word: of for word, of in of_word.items() if of[0] != field}
         chosen[field] = value

@@ -286,7 +286,7 @@ class Assembler {
     if (parts.info->immediate == ImmediateType::Float) {
       if (!is_float && !looks_hexadecimal(text)) {
         fail(place,
-             fmt::format("'{}' is no float; write {}.0 for the number, or 0x... for the bit pattern", text, text));
+             fmt::format("'{}' is not a float; write {}.0 for the number, or 0x... for the bit pattern", text, text));
       }
     } else if (is_float && parts.info->immediate != ImmediateType::Either) {
       fail(place, fmt::format("{} takes an integer, not the float {}", parts.info->mnemonic, text));

@@ -353,7 +353,7 @@ TEST(Assembler, ErrorsNameLineColumnAndRemedy) {
   EXPECT_EQ(error_of("fadd r1, r2"), "file:1:12: expected ',' before the next operand, found the end of the line");
   EXPECT_EQ(error_of("fadd r1, r2, r3, r4"), "file:1:16: expected the end of the line, found ','");
   EXPECT_EQ(error_of("fadd r1, r2, 2"),
-            "file:1:14: '2' is no float; write 2.0 for the number, or 0x... for the bit pattern");
+            "file:1:14: '2' is not a float; write 2.0 for the number, or 0x... for the bit pattern");
   EXPECT_EQ(error_of("iadd r1, r2, 2.5"), "file:1:14: iadd takes an integer, not the float 2.5");
   EXPECT_EQ(error_of("iadd r1, r2, 4294967296"),
             "file:1:14: 4294967296 does not fit in 32 bits; integers are -2147483648 to 4294967295");

@@ -146,7 +146,8 @@ Pointer Lowering::global(uint32_t id, const Variable& variable) {
       switch (module_.type(element).kind) {
         case TypeKind::SampledImage: {
           if (!module_.type(module_.type(element).element).is_2d)
-            fail(fmt::format("sampler '{}' is no sampler2D, and the scene has no other textures", module_.name_of(id)));
+            fail(fmt::format("sampler '{}' is not a sampler2D, and the scene has no other textures",
+                             module_.name_of(id)));
           const auto textures = resources_.textures.find(place);
           if (textures == resources_.textures.end()) missing("sampler");
           pointer.to = Pointer::To::Textures;
@@ -160,7 +161,7 @@ Pointer Lowering::global(uint32_t id, const Variable& variable) {
           pointer.to = Pointer::To::Tree;
           return pointer;
         default:
-          fail(fmt::format("'{}' is no sampler2D, image2D or accelerationStructureEXT", module_.name_of(id)));
+          fail(fmt::format("'{}' is not a sampler2D, image2D or accelerationStructureEXT", module_.name_of(id)));
       }
     }
     default:

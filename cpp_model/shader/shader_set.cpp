@@ -359,7 +359,7 @@ class Folder : public ShaderSet {
   void check_picture(const Module& module, uint32_t type, const Binding& binding) const {
     if (!module.type(type).is_2d || module.type(module.type(type).element).kind != TypeKind::Float) {
       throw InputError(
-          fmt::format("{}: image '{}' is no image2D of floats, and there is but the picture to write: "
+          fmt::format("{}: image '{}' is not an image2D of floats, and only the picture can be written: "
                       "declare it rgba32f image2D",
                       module.name(), binding.name));
     }

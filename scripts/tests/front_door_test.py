@@ -144,10 +144,10 @@ class Values(unittest.TestCase):
         for word, name in (("SCNE=room", "SCENE"), ("look-at=1", "LOOK_AT"), ("CONFIGS=4w4c", "CONFIG")):
             done = make("sim", "SIZE=8x8", word, folder=self.folder)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
-            said = f"{word.split('=')[0]} is no variable of this Makefile: did you mean {name}? (make help-all"
+            said = f"{word.split('=')[0]} is not a variable of this Makefile: did you mean {name}? (make help-all"
             self.assertIn(said, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1)
-        self.assertIn("XYZZY is no variable of this Makefile (make", make("XYZZY=1", folder=self.folder).stderr)
+        self.assertIn("XYZZY is not a variable of this Makefile (make", make("XYZZY=1", folder=self.folder).stderr)
         # Neither parts of a value, nor what an outer make hands on, nor what tools read.
         self.words("sim", "SET=warps=2 scne=3", "CXX=g++", "CMAKE_GENERATOR=Ninja")
         self.words("sim", "SCNE=room", MAKELEVEL="1")

@@ -17,7 +17,7 @@ lint() { "$folder/scripts/lint.sh" "$@"; }
 # shellcheck disable=SC2016 # a script to be checked
 unquoted='#!/bin/bash\nrm $1\n'
 expect "what is right is clean" 0 "all 3 checks are clean" lint columns python shell
-expect "a kind that there is not" 1 "'colums' is no kind of check" lint colums
+expect "a kind that there is not" 1 "'colums' is not a kind of check" lint colums
 printf '%b' "$unquoted" > "$folder/scripts/unquoted.sh"
 expect "a word that is not quoted" 1 "SC2086" lint shell
 expect "... is none of Python's business" 0 "all 1 checks are clean" lint python

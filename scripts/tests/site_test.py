@@ -191,7 +191,7 @@ class Refusals(unittest.TestCase):
         (self.folder / "mine").write_text("")
         done = build(ROOT, self.folder)
         self.assertEqual((done.returncode, done.stdout), (1, ""))
-        self.assertIn("it is no site: name another folder", done.stderr)
+        self.assertIn("it is not a site: name another folder", done.stderr)
         self.assertTrue((self.folder / "mine").exists())
 
 

@@ -250,7 +250,7 @@ class Refusals(Case):
         self.assertFalse(self.out.exists())
 
     def test_what_cannot_be_used_gets_a_sentence(self):
-        self.refuses("'moodel' is no level; there are native, estimate, functional", "--levels", "native,moodel")
+        self.refuses("'moodel' is not a level; there are native, estimate, functional", "--levels", "native,moodel")
         self.refuses("no level is named", "--levels", ",")
         for runs in ("0", "-1", "two", "1000"):
             self.refuses(f"'{runs}' must be from 1 to 999", f"--runs={runs}")

@@ -179,9 +179,9 @@ class Runs(unittest.TestCase):
         self.assertFalse(self.out.exists())
 
     def test_what_cannot_be_used_gets_a_sentence(self):
-        self.refuses("'25' is no machine: it begins with the bits of a significand, 11 to 24", "--machines", "24 25")
-        self.refuses("'20-fluse' is no machine: 'fluse' is none of fma", "--machines", "20-fluse")
-        self.refuses("'20-newton1-newton0' is no machine: 'newton0' is none of", "--machines", "20-newton1-newton0")
+        self.refuses("'25' is not a machine: it begins with the bits of a significand, 11 to 24", "--machines", "24 25")
+        self.refuses("'20-fluse' is not a machine: 'fluse' is none of fma", "--machines", "20-fluse")
+        self.refuses("'20-newton1-newton0' is not a machine: 'newton0' is none of", "--machines", "20-newton1-newton0")
         self.refuses("no machine is named", "--machines", ",")
         self.refuses("is fitted to one frame", "--machines", "24-fit", "--shaders", "ao", "--samples", "2")
         self.refuses("'0' must be from 1 to 999", "--jobs", "0")
