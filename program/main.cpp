@@ -8,7 +8,13 @@
 namespace raypool {
 namespace {
 
-constexpr EstimatingEngines kEstimating = {sampled::kSampler, estimate::error_of, estimate::estimate_frame};
+Estimates estimated(const Configuration& configuration, uint32_t units, const Scene& scene, const MemoryImage& image,
+                    const Tracer& tracer, const NativeOptions& native, const NativeStatistics& whole) {
+  return estimate::estimate_frame(configuration, units,
+                                  estimate::count_frame(configuration, scene, image, tracer, native, whole));
+}
+
+constexpr EstimatingEngines kEstimating = {sampled::kSampler, estimate::error_of, estimated};
 
 struct Commands {
   Commands(CLI::App& app, const std::vector<std::string>& words, int& code)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bits.hpp"
@@ -17,8 +18,8 @@
 namespace raypool::estimate {
 namespace {
 
-// Pixels whose flow is computed, in so many runs of neighbouring tiles.
-constexpr uint32_t kPixels = 16384, kRuns = 16;
+// Runs of neighbouring tiles whose flow is computed.
+constexpr uint32_t kRuns = 16;
 constexpr int kRounds = 2;
 // How far 19 of 20 estimates are off at most, as a share of the true value: `make estimates` measures it.
 constexpr double kStaticError = 0.14, kHardwareError = 0.33, kLeastShareError = 0.01;
@@ -27,20 +28,13 @@ double relative_error(const Configuration& configuration) {
   return configuration.chip.traverser == TraverserName::Hardware ? kHardwareError : kStaticError;
 }
 
-KernelTable kernel_costs(const Configuration& configuration) {
-  const Program& program = ray_kernel_program(KernelTarget(configuration));
-  KernelTable costs;
-  for (size_t i = 0; i < kRayKernels; ++i) costs[i] = costs_of(program, kRayKernelNames[i], configuration);
-  return costs;
-}
-
 struct Chosen {
   uint32_t tile;
   bool filled;  // caches are as they are in the whole frame
 };
 /// The tiles whose flow is computed, in their order.
-std::vector<Chosen> chosen_tiles(uint32_t tiles, uint32_t threads) {
-  const uint32_t wanted = std::max(4 * kRuns, kPixels / threads);
+std::vector<Chosen> chosen_tiles(uint32_t tiles, uint32_t threads, uint32_t pixels) {
+  const uint32_t wanted = std::max(4 * kRuns, pixels / threads);
   std::vector<Chosen> chosen;
   if (wanted >= tiles) {
     for (uint32_t i = 0; i < tiles; ++i) chosen.push_back({i, true});
@@ -62,11 +56,11 @@ double share_of(uint64_t part, uint64_t all) {
 /// What the rays of some tiles come to, from drawing just these.
 class TileCounter {
  public:
-  TileCounter(const Configuration& configuration, const Tracer& tracer, const NativeOptions& native)
+  TileCounter(const Configuration& configuration, const Tracer& tracer, const NativeOptions& native, uint32_t pixels)
       : configuration_(configuration), tracer_(tracer), native_(native), tile_of_(native.width * native.height) {
     const std::vector<PixelTile> all = chip::along_walk(configuration, native.width, native.height);
     const uint32_t width = 1u << tile_width_log2(configuration.contents());
-    for (const auto& [number, filled] : chosen_tiles(size32(all), all.front().pixels)) {
+    for (const auto& [number, filled] : chosen_tiles(size32(all), all.front().pixels, pixels)) {
       const PixelTile& tile = all[number];
       TileWork work;
       work.threads = tile.pixels;
@@ -106,12 +100,7 @@ class TileCounter {
     }
     return work_;
   }
-  const RayVisits& visits() const { return visits_; }
-  double rays() const {
-    double sum = 0;
-    for (const TileWork& work : work_) sum += work.rays;
-    return sum;
-  }
+  RayVisits take_visits() { return std::move(visits_); }
 
  private:
   bool trace(const Ray& ray, Intersection& hit) {
@@ -145,27 +134,42 @@ class TileCounter {
 
 }  // namespace
 
+KernelTable kernel_costs(const Configuration& configuration) {
+  const Program& program = ray_kernel_program(KernelTarget(configuration));
+  KernelTable costs;
+  for (size_t i = 0; i < kRayKernels; ++i) costs[i] = costs_of(program, kRayKernelNames[i], configuration);
+  return costs;
+}
+
 double error_of(const Configuration& configuration) {
   const double error = relative_error(configuration);
   return (1 / (1 - error) - 1 / (1 + error)) / 2;
 }
 
-Estimates estimate_frame(const Configuration& configuration, uint32_t units, const Scene& scene,
-                         const MemoryImage& image, const Tracer& tracer, const NativeOptions& native,
-                         const NativeStatistics& whole) {
-  TileCounter counter(configuration, tracer, native);
-  Workload work;
-  work.depth = native.depth;
-  work.reflections = secondary_kernel(static_cast<int>(native.depth), native.reflections) == RayKernel::CastSecondary;
-  work.tiles = counter.count(scene, image);
+FrameCounts count_frame(const Configuration& configuration, const Scene& scene, const MemoryImage& image,
+                        const Tracer& tracer, const NativeOptions& native, const NativeStatistics& whole,
+                        uint32_t pixels) {
+  TileCounter counter(configuration, tracer, native, pixels);
+  FrameCounts counts;
+  counts.work.depth = native.depth;
+  counts.work.reflections =
+      secondary_kernel(static_cast<int>(native.depth), native.reflections) == RayKernel::CastSecondary;
+  counts.work.tiles = counter.count(scene, image);
+  counts.visits = counter.take_visits();
+  counts.rays = static_cast<double>(whole.rays());
+  return counts;
+}
+
+Estimates estimate_frame(const Configuration& configuration, uint32_t units, const FrameCounts& counts) {
+  Workload work = counts.work;
   const auto kernels = kernel_costs(configuration);
-  const auto rays = static_cast<double>(whole.rays());
+  const double rays = counts.rays;
   Flow flow = flow_of(configuration, units, work, kernels);
   if (configuration.chip.traverser == TraverserName::Hardware) {
     // What caches read depends on how many rays are in flight and in which order, and that on what they read.
     for (int i = 0; i < kRounds; ++i) {
       const auto in_flight = std::max(1u, static_cast<uint32_t>(flow.in_flight));
-      work.reads = reads_a_ray(configuration.chip, counter.visits(), flow.order, in_flight);
+      work.reads = reads_a_ray(configuration.chip, counts.visits, flow.order, in_flight);
       flow = flow_of(configuration, units, work, kernels);
     }
   }

@@ -35,7 +35,8 @@ struct Frame : test::RealFrame {
   Estimates estimated() {
     NativeStatistics whole;
     render_native(scene, image, tracer, native, &whole);
-    return estimate_frame(options.configuration, units, scene, image, tracer, native, whole);
+    return estimate_frame(options.configuration, units,
+                          count_frame(options.configuration, scene, image, tracer, native, whole));
   }
 
   uint32_t units;
@@ -74,8 +75,9 @@ TEST(EstimatedFrame, KnowsThePixelsOutsideThePicture) {
   frame.native.width = frame.native.height = 20;  // tiles of 8x8
   NativeStatistics whole;
   render_native(frame.scene, frame.image, frame.tracer, frame.native, &whole);
-  const Estimates estimates =
-      estimate_frame(frame.options.configuration, 1, frame.scene, frame.image, frame.tracer, frame.native, whole);
+  const Estimates estimates = estimate_frame(
+      frame.options.configuration, 1,
+      count_frame(frame.options.configuration, frame.scene, frame.image, frame.tracer, frame.native, whole));
   EXPECT_NEAR(estimates.mrays_per_s.value * estimates.cycles.value / 1e3, static_cast<double>(whole.rays()), 1);
 }
 

@@ -21,10 +21,19 @@ constexpr uint32_t kFillingShare = 8;
 constexpr double kDecision = 6, kRead = 5;
 constexpr double kRayBeats = 3;
 
+double service(double overhead, double beats, bool pipelined) {
+  return pipelined ? std::max(overhead, beats) : overhead + beats;
+}
+
 class LaunchFlow {
  public:
   LaunchFlow(const Configuration& configuration, uint32_t units, const Workload& work, const KernelTable& kernels)
-      : chip_(configuration.chip), work_(work), rules_(chip_, configuration.contents(), units), flights_(chip_, work) {
+      : chip_(configuration.chip),
+        work_(work),
+        ports_(configuration),
+        lanes_(configuration.lanes),
+        rules_(chip_, configuration.contents(), units),
+        flights_(chip_, work) {
     const auto exporter = [this](const Launch& launch, uint32_t first, uint32_t count, bool reflections) {
       return exports_of(launch, first, count, reflections);
     };
@@ -33,15 +42,6 @@ class LaunchFlow {
         make_policy(chip_.policy, {configuration.contents(), units, chip_.ray_pool_size, chip_.intersection_pool_size,
                                    chip_.thresholds_rays, chip_.thresholds_intersections, chip_.static_traverser_batch,
                                    work.reflections ? 2u : 1u});
-    const auto service = [](double overhead, double beats, bool pipelined) {
-      return pipelined ? std::max(overhead, beats) : overhead + beats;
-    };
-    lanes_ = configuration.lanes;
-    put_cycles_ = configuration.intersection_beats();
-    export_cycles_ =
-        service(chip_.ray_pool_overhead, kRayBeats * chip_.ray_pool_cycles_per_beat, chip_.ray_pool_pipelined);
-    import_cycles_ = service(chip_.intersection_pool_overhead, put_cycles_ * chip_.intersection_pool_cycles_per_beat,
-                             chip_.intersection_pool_pipelined);
   }
 
   Flow run() {
@@ -143,14 +143,14 @@ class LaunchFlow {
       }
       importer_ = &asking;
       import_turn_ = (import_turn_ + i + 1) % units_.size();
-      import_ends_ = now_ + import_cycles_;
+      import_ends_ = now_ + ports_.intersection;
       --size_[launch->import];
       return;
     }
   }
   void end_import() {
     import_ends_ = kNoEvent;
-    flow_.intersection_port += import_cycles_;
+    flow_.intersection_port += ports_.intersection;
     importer_->imported();
   }
 
@@ -162,13 +162,13 @@ class LaunchFlow {
       if (out == nullptr || out->rays.empty()) continue;
       exporter_ = &offering;
       export_turn_ = (export_turn_ + i + 1) % units_.size();
-      export_ends_ = now_ + export_cycles_;
+      export_ends_ = now_ + ports_.ray;
       return;
     }
   }
   void end_export() {
     export_ends_ = kNoEvent;
-    flow_.ray_port += export_cycles_;
+    flow_.ray_port += ports_.ray;
     const Export& out = *exporter_->offered(now_);
     Launch& launch = *out.launch;
     const FlowRay ray = out.rays[out.rays.size() - out.left];
@@ -192,7 +192,7 @@ class LaunchFlow {
       if (size_[kind_of(*ray)] >= chip_.intersection_pool_size) continue;
       putting_ = *ray;
       results_.erase(ray);
-      put_ends_ = now_ + put_cycles_;
+      put_ends_ = now_ + ports_.put;
       return;
     }
   }
@@ -362,12 +362,12 @@ class LaunchFlow {
 
   const ChipConfiguration& chip_;
   const Workload& work_;
+  const PortTimes ports_;
+  const uint32_t lanes_;
   LaunchRules rules_;
   std::unique_ptr<KernelPolicy> policy_;
   RayFlights flights_;
   std::vector<UnitFlow> units_;
-  uint32_t lanes_ = 1;
-  double export_cycles_ = 0, import_cycles_ = 0, put_cycles_ = 0;
 
   double now_ = 0;
   double launch_at_ = kNoEvent, stall_ends_ = kNoEvent;
@@ -391,6 +391,13 @@ class LaunchFlow {
 };
 
 }  // namespace
+
+PortTimes::PortTimes(const Configuration& configuration) : put(configuration.intersection_beats()) {
+  const ChipConfiguration& chip = configuration.chip;
+  ray = service(chip.ray_pool_overhead, kRayBeats * chip.ray_pool_cycles_per_beat, chip.ray_pool_pipelined);
+  intersection = service(chip.intersection_pool_overhead, put * chip.intersection_pool_cycles_per_beat,
+                         chip.intersection_pool_pipelined);
+}
 
 Flow flow_of(const Configuration& configuration, uint32_t units, const Workload& work, const KernelTable& kernels) {
   return LaunchFlow(configuration, units, work, kernels).run();

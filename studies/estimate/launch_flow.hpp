@@ -16,6 +16,12 @@
 
 namespace raypool::estimate {
 
+/// Cycles for which a port serves a ray or an intersection, and in which the pool takes an intersection.
+struct PortTimes {
+  explicit PortTimes(const Configuration& configuration);
+  double ray = 0, intersection = 0, put = 0;
+};
+
 struct Flow {
   double cycles = 0;
   /// Between the launches of a tile near the first one and of the last one, when pools are filled.

@@ -14,6 +14,14 @@
 
 namespace raypool::estimate {
 
+/// What rays in flight ask for together, in a cycle of their ways.
+struct Asked {
+  double nodes = 0, triangles = 0, nodes_read = 0, triangles_read = 0;
+};
+
+/// Cycles a ray of a traverser that is always full; `work`: with its reads.
+double full_flight_cycles(const ChipConfiguration& chip, const Workload& work);
+
 class RayFlights {
  public:
   RayFlights(const ChipConfiguration& chip, const Workload& work) : chip_(chip), work_(work) {}
@@ -31,16 +39,13 @@ class RayFlights {
   double ray_cycles() const { return ray_cycles_; }
 
  private:
-  double alone(const FlowRay& ray) const;
   void share(const FlowRay& ray, double sign);
-  void set_rate();
-  double bank_wait(double lookups, double misses, double away, uint32_t mshrs) const;
 
   const ChipConfiguration& chip_;
   const Workload& work_;
   std::multimap<double, FlowRay> flying_;  // by the end of the way, on the clock that goes on with the rate
   double clock_ = 0, rate_ = 1, now_ = 0, ray_cycles_ = 0;
-  double nodes_ = 0, triangles_ = 0, nodes_read_ = 0, triangles_read_ = 0;  // that all ask for, a cycle of their ways
+  Asked asked_;
 };
 
 }  // namespace raypool::estimate

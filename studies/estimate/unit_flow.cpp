@@ -9,9 +9,6 @@ namespace {
 // Cycles from a launch that is taken to the first instruction of a warp and to the first request of a package; from a
 // package to the instruction behind rin; from a swap to the first beat that is offered.
 constexpr double kStart = 8, kRequest = 5, kFilled = 3, kOffer = 5;
-// How sharply warps that share a resource slow each other down: at a load of 1 by 2^(1 / kUnitSharpness). Calibrated
-// with the machines of docs/studies/estimate.md.
-constexpr double kUnitSharpness = 5;
 
 }  // namespace
 

@@ -18,6 +18,10 @@
 
 namespace raypool::estimate {
 
+/// How sharply warps that share a resource slow each other down: at a load of 1 by 2^(1 / kUnitSharpness). Calibrated
+/// with the machines of docs/studies/estimate.md.
+inline constexpr double kUnitSharpness = 5;
+
 using KernelTable = EnumArray<RayKernel, KernelCosts, kRayKernels>;
 
 struct Launch {
