@@ -121,7 +121,7 @@ FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
 .PHONY: help help-all sim compare run cosim configurations faults unit test test-long lint format
 .PHONY: bench clean
 .PHONY: setup-% program configured-%
-.PHONY: numerics-long proofs synth synth-replay synth-prove growth isa diagrams quoted docs
+.PHONY: numerics-long proofs synth synth-replay synth-prove growth areas isa diagrams quoted docs
 .PHONY: package bench-native synth-module follow tour chip-frames
 .PHONY: traverser-trees
 
@@ -275,6 +275,10 @@ synth-module: setup-synth ## area and slack of one module for each of PARAMETERS
 #: variables of make growth:  PLAN=FILE  OUT=FOLDER
 growth: setup-sim setup-synth program ## area against warps, lanes, ALUs; what each feature costs
 	@$(SYNTH) growth $(call options,PLAN OUT) $(ARGS)
+
+#: variable of make areas:  ARGS=--check: designs that it was not made from, beside it
+areas: setup-sim setup-synth program ## the table of areas that make explore takes, from about ten synthesised designs
+	@$(SYNTH) areas $(ARGS)
 
 #: variable of make test:  ONLY=NAME: a test or test program that docs/develop/where.md names, or report_*
 test: setup-sim setup-test setup-synth configured-ON ## what guards a change; ONLY=NAME: one test of it

@@ -6,7 +6,7 @@ import shutil
 import sys
 import time
 
-from . import elaborate, fit, flow, growth, module, pictures, power, prove, replay, report, timing
+from . import areas, elaborate, fit, flow, growth, module, pictures, power, prove, replay, report, timing
 from .errors import SynthError, say, warn
 from .phases import Phases
 
@@ -178,6 +178,10 @@ def prove_command(arguments):
         raise SynthError("a mapped block differs from its RTL")
 
 
+def areas_command(arguments):
+    areas.make(arguments.jobs, arguments.check)
+
+
 def growth_command(arguments):
     growth.grow(arguments.jobs, arguments.out or os.path.join(flow.BUILD, "growth"), arguments.plan)
 
@@ -205,6 +209,7 @@ def parser():
         ("replay", replay_command),
         ("prove", prove_command),
         ("growth", growth_command),
+        ("areas", areas_command),
         ("fit", fit_command),
         ("module", module_command),
     ):
@@ -238,6 +243,8 @@ def parser():
             command.add_argument(
                 "--break", dest="break_number", type=int, default=0, help="swap a cell first: must be detected"
             )
+        if name == "areas":
+            command.add_argument("--check", action="store_true", help="designs that are not in the table, beside it")
         if name == "growth":
             command.add_argument("--plan", help="what to synthesise, instead of constraints/growth.json")
         if name == "prove":
