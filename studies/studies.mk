@@ -1,7 +1,7 @@
 # What is studied with the machine. The Makefile includes it behind its own variables: those of a frame, the program,
 # and `options`.
 .PHONY: fidelity intervals pareto fit sweep report numerics significands boxes triangles referee convergence models
-.PHONY: extremes
+.PHONY: extremes explore
 
 SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=studies $(PYTHON) -m sweep
 SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
@@ -36,6 +36,15 @@ fit: checked-fit setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG:
 	@mkdir -p $(BUILD)/out
 	@$(RAYPOOL) fit $(call options,$(FRAME) SHADERS SLOWER OUT) --json $(BUILD)/out/fit.json $(ARGS)
 	@$(if $(FIT_SETUP),$(SYNTH) fit $(BUILD)/out/fit.json $(POWER_FLAG))
+
+#: variables of make explore: SCENE, SIZE, DEPTH, CONFIG, SET, SEED, and from VIEW to DETAIL
+#:   MACHINES=N                    at most                                     10000
+#:   OUT=FILE                      JSON of all machines; the plot is beside it
+#:   ARGS="--vary warps=4,8 --check 100": ARGS=--help lists the options
+explore: setup-sim setup-report program ## the fastest machines for their area, of thousands around CONFIG
+	@out="$${OUT:-$(BUILD)/out/explore/explore.json}"; mkdir -p "$$(dirname "$$out")"; \
+	  $(RAYPOOL) explore $(call options,$(strip $(call said,SCENE SIZE DEPTH CONFIG)) SET SEED MACHINES $(LOOK)) \
+	    --out "$$out" $(ARGS) && $(PYTHON) studies/explore_plot.py "$$out"
 
 #: variables of make sweep
 #:   EXPERIMENT=FILE.json

@@ -111,4 +111,26 @@ struct FitOptions {
 };
 int fit_command(const FitOptions& options);
 
+/// `raypool explore`
+struct ExploreOptions {
+  std::string scene = "room";
+  double detail = 1;
+  std::string view;
+  ViewWords look;
+  std::string size = "128x128";
+  int depth = 3;
+  std::string config = "best_8w8c";  ///< what the machines have where nothing varies
+  std::vector<std::string> set;
+  std::vector<std::string> vary;  ///< explore::set_axis()
+  size_t machines = 10'000;       ///< at most
+  uint64_t seed = 1;              ///< of their choice
+  double deviations = 0.5;        ///< explore::search_front()
+  size_t check = 0;               ///< machines at random that are simulated too
+  std::string areas;              ///< file of an explore::AreaTable; empty: the project's
+  std::string out;                ///< JSON file; empty: out/explore/explore.json beside the executable
+  bool quiet = false;             ///< no progress
+  std::vector<std::string> command;
+};
+int explore_command(const ExploreOptions& options);
+
 }  // namespace raypool

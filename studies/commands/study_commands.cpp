@@ -25,12 +25,13 @@ void add_widths_command(CLI::App& app, WidthsOptions& options, uint32_t least, u
 
 StudyCommands::StudyCommands(CLI::App& app, const std::vector<std::string>& command, int& code)
     : app_(app), code_(code) {
-  fit_.command = command;
+  fit_.command = explore_.command = command;
   add_numerics_command();
   add_significands_command();
   add_widths_commands();
   add_referee_command();
   add_fit_command();
+  add_explore_command();
 }
 
 CLI::App* StudyCommands::add(const std::string& name, const std::string& what) {
@@ -124,6 +125,41 @@ void StudyCommands::add_fit_command() {
   fit_app->add_option("--json", fit_.json, "all that was found, JSON")->type_name("FILE")->group(option_group::kOutput);
   fit_app->add_flag("--quiet", fit_.quiet, "no progress");
   fit_app->callback([this] { code_ = fit_command(fit_); });
+}
+
+void StudyCommands::add_explore_command() {
+  CLI::App* explore_app = add("explore", "find the fastest machines for their area, of thousands around one");
+  add_scene(*explore_app, explore_.scene, explore_.size, explore_.view, explore_.look, explore_.detail);
+  add_config(*explore_app, explore_.config, explore_.set);
+  add_depth(*explore_app, explore_.depth);
+  explore_app
+      ->add_option("--vary", explore_.vary,
+                   "values of a field, or of units: warps=4,8,16 (default: what docs/studies/explore.md lists)")
+      ->type_name("FIELD=V,V");
+  explore_app->add_option("--machines", explore_.machines, "as many at random where there are more combinations")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  explore_app->add_option("--seed", explore_.seed, "of their choice")->type_name("N")->capture_default_str();
+  explore_app
+      ->add_option("--deviations", explore_.deviations,
+                   "standard deviations by which guesses and estimates may be too high")
+      ->type_name("N")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  explore_app->add_option("--check", explore_.check, "simulate so many of the machines at random too")
+      ->type_name("N")
+      ->capture_default_str();
+  explore_app->add_option("--areas", explore_.areas, "table of areas (default: the project's, of make areas)")
+      ->type_name("FILE");
+  explore_app
+      ->add_option(
+          "--out", explore_.out,
+          "all machines, JSON (default: out/explore/explore.json beside the program; installed: in raypool-out)")
+      ->type_name("FILE")
+      ->group(option_group::kOutput);
+  explore_app->add_flag("--quiet", explore_.quiet, "no progress");
+  explore_app->callback([this] { code_ = explore_command(explore_); });
 }
 
 }  // namespace raypool

@@ -22,6 +22,7 @@ class StudyCommands {
   void add_numerics_command();
   void add_significands_command();
   void add_fit_command();
+  void add_explore_command();
   void add_widths_commands();
   void add_referee_command();
 
@@ -33,6 +34,7 @@ class StudyCommands {
   TrianglesOptions triangles_;
   RefereeCommandOptions referee_;
   FitOptions fit_;
+  ExploreOptions explore_;
 };
 
 }  // namespace raypool
