@@ -61,6 +61,13 @@ TEST(Correction, KnowsNothingBeforeAnythingIsMeasured) {
   EXPECT_EQ(correction_of(candidates, 0.25).factors[1], 1.0);
 }
 
+// Where each candidate has a feature of its own, a fit explains its own measurement and no other.
+TEST(Correction, DoesNotTakeWhatItIsFittedToForWhatItPredicts) {
+  std::vector<Candidate> candidates;
+  for (uint32_t i = 0; i < 40; ++i) candidates.push_back({1, 100, {i}, i % 2 == 0 ? 100 * 1.3 : 100 / 1.3});
+  EXPECT_NEAR(correction_of(candidates, 0.1).spread, std::log(1.3), 0.04);
+}
+
 TEST(SearchFront, FindsItFromAFewMeasurements) {
   std::vector<double> truth;
   std::vector<Candidate> candidates = skewed(3000, truth);
