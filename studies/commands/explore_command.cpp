@@ -149,6 +149,13 @@ size_t measured(const std::vector<Candidate>& candidates) {
 std::vector<explore::Axis> axes_of(const ExploreOptions& options) {
   std::vector<explore::Axis> axes = explore::usual_axes();
   for (const std::string& text : options.vary) explore::set_axis(axes, text);
+  // Frame and areas are the same for all machines.
+  for (const explore::Axis& axis : axes) {
+    for (const char* fixed : {"arithmetic.", "chip.traverser", "chip.culling", "chip.hardware_traverser.box_bits"}) {
+      if (axis.field.rfind(fixed, 0) == 0)
+        throw InputError(fmt::format("--vary {}: explore has one value of it for all machines: use --set", axis.field));
+    }
+  }
   return axes;
 }
 
@@ -298,7 +305,7 @@ Explored Explorer::explore() {
   return std::move(explored_);
 }
 
-/// The fewest cycles on the front of what is no larger; infinite: it has nothing so small.
+/// The fewest cycles on the front in at most this area; infinite: all of the front is larger.
 double front_cycles(const Explored& explored, double area) {
   double cycles = kImpossible;
   for (const size_t number : explored.front)

@@ -75,6 +75,8 @@ refuses() {
 refuses "did you mean warps" --vary warp=4,8
 refuses "--vary is 'warps': give a field and its values, warps=4,8,16" --vary warps
 refuses "a chip has 1, 2 or 4" --vary units=3
+refuses "one value of it for all machines" --vary chip.traverser=static,hardware
+refuses "one value of it for all machines" --vary arithmetic.fma=false,true
 refuses "leave out chip.traverser=static" --set chip.traverser=static
 refuses "the table of areas cannot be read" --areas "$folder/no.json"
 echo '{"blocks": 3}' > "$folder/wrong.json"
